@@ -1,0 +1,121 @@
+#include "bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace zspring {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double fewest_steps_per_period = 16;
+
+}  // namespace
+
+Ramp Ramp::to(double target, double value, double slope, double curvature, double length) {
+  const double rise = target - value, d = slope * length, c = 0.5 * curvature * length * length;
+  return {{value, d, c, 10 * rise - 6 * d - 3 * c, -15 * rise + 8 * d + 3 * c, 6 * rise - 3 * d - c}, length};
+}
+
+double Ramp::value(double s) const {
+  const double x = std::min(s / length, 1.0);
+  return c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
+}
+
+double Ramp::slope(double s) const {
+  const double x = s / length;
+  if (x >= 1) return 0;
+  return (c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))) / length;
+}
+
+double Ramp::curvature(double s) const {
+  const double x = s / length;
+  if (x >= 1) return 0;
+  return (2 * c[2] + x * (6 * c[3] + x * (12 * c[4] + x * 20 * c[5]))) / (length * length);
+}
+
+double Ramp::integral(double s) const {
+  const double x = std::min(s / length, 1.0);
+  const double ramp = length * x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3 + x * (c[3] / 4 + x * (c[4] / 5 + x * c[5] / 6)))));
+  return ramp + (s > length ? (s - length) * value(length) : 0);
+}
+
+double Bench::grid_step() const { return 1 / (b_.frequency * b_.steps_per_period); }
+
+double Bench::elapsed() const { return b_.node * grid_step() + b_.offset; }
+
+double Bench::to_next_node() const { return grid_step() - b_.offset; }
+
+double Bench::phase_at(double s) const {
+  const double ramp_end = b_.ramp_steps * grid_step();
+  if (s <= ramp_end) return b_.phase + 2 * pi * b_.speed.integral(s);
+  // After the ramp from the node count, so that no rounding grows over many periods.
+  const double node = std::fmod(b_.node - b_.ramp_steps, b_.steps_per_period);
+  const double beyond = (s - elapsed() + b_.offset) / grid_step();
+  return b_.phase + 2 * pi * (b_.speed.integral(ramp_end) + (node + beyond) / b_.steps_per_period);
+}
+
+void Bench::motion(double tau, Boundary& b) const {
+  const double s = elapsed() + tau;
+  const double phase = phase_at(s), sine = std::sin(phase), cosine = std::cos(phase);
+  const double X = b_.amplitude.value(s), dX = b_.amplitude.slope(s), ddX = b_.amplitude.curvature(s);
+  const double w = 2 * pi * b_.speed.value(s), dw = 2 * pi * b_.speed.slope(s);
+  b.position = X * sine;
+  b.velocity = dX * sine + X * w * cosine;
+  b.acceleration = (ddX - X * w * w) * sine + (2 * dX * w + X * dw) * cosine;
+}
+
+void Bench::tune(double frequency, double acceleration, double largest_step) {
+  if (frequency == b_.frequency && acceleration == b_.acceleration) return;
+  const double target = acceleration / (4 * pi * pi * frequency * frequency);
+  double X = 0, dX = 0, ddX = 0, f = frequency, df = 0, ddf = 0, phase = 0;
+  if (b_.frequency > 0 && !(b_.acceleration == 0 && b_.node >= b_.ramp_steps)) {
+    const double s = elapsed();
+    X = b_.amplitude.value(s), dX = b_.amplitude.slope(s), ddX = b_.amplitude.curvature(s);
+    f = b_.speed.value(s), df = b_.speed.slope(s), ddf = b_.speed.curvature(s);
+    phase = std::fmod(phase_at(s), 2 * pi);
+  }
+  const double carry = b_.carry;
+  b_ = {};
+  b_.carry = carry;
+  b_.frequency = frequency;
+  b_.acceleration = acceleration;
+  b_.phase = phase;
+  b_.steps_per_period = std::max(fewest_steps_per_period, std::ceil(1 / (frequency * largest_step) - 1e-9));
+  const double slower = std::max(1.0, frequency / std::max(f, 1e-3 * frequency));
+  // Whole periods: a host that steps by periods then stays on the grid.
+  b_.ramp_steps = b_.steps_per_period * std::round(slower);
+  const double length = b_.ramp_steps * grid_step();
+  b_.amplitude = Ramp::to(target, X, dX, ddX, length);
+  b_.speed = Ramp::to(frequency, f, df, ddf, length);
+}
+
+void Bench::advance(double h, bool reaches_node, double force_begin, double force_end) {
+  if (b_.node >= b_.ramp_steps) {
+    const double begin = phase_at(elapsed()), end = phase_at(elapsed() + h);
+    // (1/pi) integral of F sin, F cos over the period.
+    const double weight = h * b_.frequency;
+    b_.sin_sum += weight * (force_begin * std::sin(begin) + force_end * std::sin(end));
+    b_.cos_sum += weight * (force_begin * std::cos(begin) + force_end * std::cos(end));
+  }
+  if (!reaches_node) {
+    b_.offset += h;
+    return;
+  }
+  b_.offset = 0;
+  b_.node += 1;
+  const double done = b_.node - b_.ramp_steps;
+  if (done > 0 && std::fmod(done, b_.steps_per_period) == 0) finish_period();
+}
+
+void Bench::finish_period() {
+  const double X = b_.amplitude.value(b_.amplitude.length);
+  const std::complex<double> force(b_.sin_sum, b_.cos_sum), before(b_.H_re, b_.H_im);
+  const std::complex<double> H = X > 0 && std::norm(force) > 0 ? -X / force : 0;
+  b_.change = b_.periods > 0 && std::norm(H) > 0 ? std::abs(H - before) / std::abs(H) : 1;
+  b_.H_re = H.real();
+  b_.H_im = H.imag();
+  b_.sin_sum = b_.cos_sum = 0;
+  b_.periods += 1;
+}
+
+}  // namespace zspring

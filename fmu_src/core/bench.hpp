@@ -1,0 +1,82 @@
+// The built-in test bench: a response-controlled sine on the head and the first-order FRF of its answer.
+//
+// Displacement X sin(phase), X = acceleration / (2 pi f)^2. A change of frequency or acceleration starts a ramp
+// that leads amplitude and frequency to their new values with continuous phase, position, velocity and
+// acceleration, over about one period of the slower of the two, a whole number of the new ones; from then on whole periods are counted. The grid has a
+// whole number of equal steps in each period, so that the trapezoidal rule over a period is exact for every
+// harmonic that it resolves.
+//
+// H = -Z/F with Z, F the components of head displacement and contact force at f: minus because a positive
+// contact force pushes down, so that the static phase is 0.
+#pragma once
+
+#include <complex>
+
+#include "state.hpp"
+
+namespace zspring {
+
+// Quintic p(s), s since the start, from given value, slope and curvature to a constant, reached after `length`.
+struct Ramp {
+  double c[6] = {};  // coefficients in x = s / length
+  double length = 0;
+
+  static Ramp to(double target, double value, double slope, double curvature, double length);
+  double value(double s) const;
+  double slope(double s) const;
+  double curvature(double s) const;
+  double integral(double s) const;
+};
+
+struct BenchState {
+  double frequency = 0, acceleration = 0;  // the programme's targets; frequency 0: none yet
+  Ramp amplitude, speed;                   // m; Hz
+  double phase = 0;                        // rad, where the ramp began
+  double steps_per_period = 0;
+  double ramp_steps = 0;
+  double node = 0;      // grid steps done since the ramp began
+  double offset = 0;    // s beyond that node, where a communication point cut a step
+  double carry = 0;     // s, rounding left over by the last communication step
+  double sin_sum = 0, cos_sum = 0;  // N, of the running period
+  double periods = 0;
+  double H_re = 0, H_im = 0;  // m/N
+  double change = 1;
+};
+
+template <class Visitor>
+void visit(Ramp& r, Visitor&& f) {
+  for (double& c : r.c) f(c);
+  f(r.length);
+}
+
+template <class Visitor>
+void visit(BenchState& b, Visitor&& f) {
+  f(b.frequency), f(b.acceleration);
+  visit(b.amplitude, f);
+  visit(b.speed, f);
+  f(b.phase), f(b.steps_per_period), f(b.ramp_steps), f(b.node), f(b.offset), f(b.carry);
+  f(b.sin_sum), f(b.cos_sum), f(b.periods), f(b.H_re), f(b.H_im), f(b.change);
+}
+
+class Bench {
+ public:
+  explicit Bench(BenchState& state) : b_(state) {}
+
+  // Start a new programme if frequency (Hz) or acceleration (m/s2) differ from the running one.
+  void tune(double frequency, double acceleration, double largest_step);
+  double grid_step() const;                       // s
+  double to_next_node() const;                    // s
+  void motion(double tau, Boundary& b) const;     // tau s from now
+  // Move on by h s, a step that ends at the next node if `reaches_node`; forces (N, less the static one) at its
+  // begin and end.
+  void advance(double h, bool reaches_node, double force_begin, double force_end);
+
+ private:
+  double elapsed() const;            // s since the ramp began
+  double phase_at(double s) const;   // rad
+  void finish_period();
+
+  BenchState& b_;
+};
+
+}  // namespace zspring

@@ -1,0 +1,237 @@
+#include "hht.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace zspring {
+namespace {
+
+constexpr int joint_dof[] = {ALPHA, BETA};
+constexpr int mass_dof[] = {U1, U2, U3};
+
+// Gauss elimination without pivoting. It needs none: the matrix is that of a positive definite one with its
+// rod columns scaled by dw/dz >= 0 and ds/dz >= 0 added to their diagonal, so every pivot is positive. One that
+// is not tells that the step is too large for the stiffness met, and the caller halves it.
+bool eliminate(Matrix4& A, Vector4& x) {
+  for (int k = 0; k < 4; ++k) {
+    if (!(A(k, k) > 0)) return false;
+    const double inverse = 1 / A(k, k);
+    for (int i = k + 1; i < 4; ++i) {
+      const double factor = A(i, k) * inverse;
+      for (int j = k + 1; j < 4; ++j) A(i, j) -= factor * A(k, j);
+      x[i] -= factor * x[k];
+    }
+    A(k, k) = inverse;
+  }
+  for (int k = 3; k >= 0; --k) {
+    for (int j = k + 1; j < 4; ++j) x[k] -= A(k, j) * x[j];
+    x[k] *= A(k, k);
+  }
+  return true;
+}
+
+// The slopes of tanh(y) that the literature tries: exact sech^2(y), secant tanh(y)/y, their mean.
+double tanh_slope(Tangent tangent, double y) {
+  const double t = std::tanh(y);
+  const double exact = (1 - t) * (1 + t);
+  const double secant = std::abs(y) < 1e-5 ? 1 - y * y / 3 : t / y;
+  if (tangent == Tangent::Exact) return exact;
+  return tangent == Tangent::Secant ? secant : 0.5 * (exact + secant);
+}
+
+}  // namespace
+
+HhtCoefficients::HhtCoefficients(const Mechanics& m, double step) : h(step) {
+  alpha = m.parameters.solver.hht_alpha;
+  weight = 1 + alpha;
+  const double beta = 0.25 * (1 - alpha) * (1 - alpha);
+  const double gamma = 0.5 - alpha;
+  beta_h2 = beta * h * h;
+  gamma_h = gamma * h;
+  old_position = (0.5 - beta) * h * h;
+  old_velocity = (1 - gamma) * h;
+  // Any rho > 0 solves the same step; this one gives J a diagonal of about weight * moment_bound.
+  for (int j = 0; j < 2; ++j) {
+    const int i = joint_dof[j];
+    rho[j] = (m.mass[i] + weight * beta_h2 * m.static_tangent(i, i)) / (gamma_h * weight * m.moment_bound[j]);
+  }
+}
+
+double Hht::head_force(const Boundary& b, double u, double v, bool& closed) const {
+  const Parameters& p = m_.parameters;
+  if (p.drive == Drive::Force) {
+    closed = true;
+    return b.contact_force;
+  }
+  const double force = p.static_force + p.contact_k * (u - b.position) + p.contact_c * (v - b.velocity);
+  closed = force > 0;
+  return closed ? force : 0;
+}
+
+bool Hht::evaluate(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b1, bool direct, Trial& t) const {
+  const Parameters& p = m_.parameters;
+  for (int i : mass_dof) {
+    t.a[i] = t.x[i];
+    t.v[i] = from.v[i] + c.old_velocity * from.a[i] + c.gamma_h * t.a[i];
+    t.q[i] = from.q[i] + c.h * from.v[i] + c.old_position * from.a[i] + c.beta_h2 * t.a[i];
+  }
+  if (head_imposed()) {
+    t.a[U1] = b1.acceleration;
+    t.v[U1] = b1.velocity;
+    t.q[U1] = b1.position;
+  }
+  for (int j = 0; j < 2; ++j) {
+    const int i = joint_dof[j];
+    const double v_predicted = from.v[i] + c.old_velocity * from.a[i];
+    if (direct) {
+      t.a[i] = t.x[i];
+      t.v[i] = v_predicted + c.gamma_h * t.a[i];
+      const double y = p.zspring.tau * t.v[i];
+      t.s[j] = std::tanh(y);
+      t.angle_slope[j] = c.beta_h2;
+      t.acceleration_slope[j] = 1;
+      t.moment_slope[j] = c.gamma_h * p.zspring.tau * tanh_slope(p.solver.tangent, y);
+    } else {
+      const Resolvent r = resolvent(m_.law, c.rho[j], p.zspring.tau, t.x[i], t.v[i]);
+      t.v[i] = r.w;
+      t.a[i] = (r.w - v_predicted) / c.gamma_h;
+      t.s[j] = r.s;
+      t.acceleration_slope[j] = r.dw_dz / c.gamma_h;
+      t.angle_slope[j] = c.beta_h2 * t.acceleration_slope[j];
+      t.moment_slope[j] = r.ds_dz;
+    }
+    t.q[i] = from.q[i] + c.h * from.v[i] + c.old_position * from.a[i] + c.beta_h2 * t.a[i];
+  }
+  if (!m_.springs(t.q, t.internal, t.head_tangent)) return false;
+  t.internal += m_.damping_force(t.v);
+  for (int j = 0; j < 2; ++j) t.internal[joint_dof[j]] += m_.moment_bound[j] * t.s[j];
+  t.contact_force = head_imposed() ? 0 : head_force(b1, t.q[U1], t.v[U1], t.closed);
+  return true;
+}
+
+bool Hht::solve(const HhtCoefficients& c, const Trial& t, Vector5& r) const {
+  const Parameters& p = m_.parameters;
+  const double gw = c.weight * c.gamma_h, bw = c.weight * c.beta_h2;
+  // Column of a joint: its angle moves the spring, its moment stands on the diagonal alone.
+  Matrix4 A;
+  A.col(0) = bw * t.head_tangent.col(0);
+  A.col(1) = c.weight * t.angle_slope[0] * t.head_tangent.col(1);
+  A.col(2) = c.weight * t.angle_slope[1] * t.head_tangent.col(2);
+  A.col(3) = bw * t.head_tangent.col(3);
+  for (int j = 0; j < 2; ++j)
+    A(j + 1, j + 1) += m_.mass[j + 1] * t.acceleration_slope[j] + c.weight * m_.moment_bound[j] * t.moment_slope[j];
+  A(0, 0) += m_.mass[U1] + gw * p.c1;
+  A(0, 3) -= gw * p.c1;
+  A(3, 0) -= gw * p.c1;
+  A(3, 3) += m_.mass[U2] + gw * (p.c1 + p.c2) + bw * p.k2;
+  if (p.drive == Drive::Wire && t.closed) A(0, 0) += gw * p.contact_c + bw * p.contact_k;
+
+  // The lower frame couples to the upper one only.
+  const double coupling = -(gw * p.c2 + bw * p.k2);
+  const double lower = m_.mass[U3] + gw * (p.c2 + p.c3) + bw * (p.k2 + p.k3);
+  A(3, 3) -= coupling * coupling / lower;
+  Vector4 x = r.head<4>();
+  x[3] -= coupling / lower * r[U3];
+  if (head_imposed()) {
+    A.row(0).setZero();
+    A(0, 0) = 1;
+    x[0] = 0;
+  }
+  if (!eliminate(A, x)) return false;
+  r[U3] = (r[U3] - coupling * x[3]) / lower;
+  r.head<4>() = x;
+  return true;
+}
+
+Vector5 Hht::old_load(const MechanicalState& from, const Boundary& b0) const {
+  Vector5 R = from.internal;
+  for (int k = 0; k < 3; ++k) R[mass_dof[k]] -= b0.uplift[k];
+  if (!head_imposed()) {
+    bool closed;
+    R[U1] += head_force(b0, from.q[U1], from.v[U1], closed);
+  }
+  return R;
+}
+
+// The size of the forces that a step balances, N and N m. The last term lifts the tolerance above rounding for
+// very stiff springs.
+Vector5 Hht::residual_scale(const MechanicalState& from) const {
+  const ZSpringParameters& z = m_.parameters.zspring;
+  const double force = m_.load + std::abs(from.contact_force) + from.internal.cwiseAbs().maxCoeff() +
+                       m_.mass.cwiseProduct(from.a).cwiseAbs().maxCoeff() + 1e-6 * z.k * z.d;
+  Vector5 scale;
+  scale << force, force * z.L1, force * z.L2, force, force;
+  return scale;
+}
+
+bool Hht::step(const MechanicalState& from, const Boundary& b0, const Boundary& b1, double h, MechanicalState& to,
+               StepFailure& failure) const {
+  const HhtCoefficients c(m_, h);
+  const SolverParameters& solver = m_.parameters.solver;
+  const bool direct = m_.law == FrictionLaw::Tanh && solver.tangent != Tangent::Resolvent;
+  const Vector5 R0 = old_load(from, b0);
+  const Vector5 allowed = solver.tolerance * residual_scale(from);
+
+  Trial t;
+  t.x = from.a;
+  t.v = from.v;
+  if (!direct)
+    for (int j = 0; j < 2; ++j) t.x[joint_dof[j]] = c.rho[j] * from.v[joint_dof[j]] + from.s[j];
+
+  to.statistics = from.statistics;
+  failure.residual = HUGE_VAL;
+  failure.dof = U1;
+  int iteration = 0;
+  bool converged = false, small_change = false;
+  for (;; ++iteration) {
+    if (!evaluate(c, from, b1, direct, t)) break;
+    Vector5 r = m_.mass.cwiseProduct(t.a) + c.weight * t.internal - c.alpha * R0;
+    for (int k = 0; k < 3; ++k) r[mass_dof[k]] -= c.weight * b1.uplift[k];
+    if (head_imposed())
+      r[U1] = 0;
+    else
+      r[U1] += c.weight * t.contact_force;
+    const double worst = r.cwiseAbs().cwiseQuotient(allowed).maxCoeff(&failure.dof);
+    failure.residual = std::abs(r[failure.dof]);
+    if (!r.allFinite()) break;
+    converged = small_change || worst <= 1;
+    if (converged || iteration == solver.max_iterations || !solve(c, t, r)) break;
+    t.x -= r;
+    Vector5 change = c.beta_h2 * r;
+    for (int j = 0; j < 2; ++j) change[joint_dof[j]] = t.angle_slope[j] * r[joint_dof[j]];
+    small_change = change.norm() <= solver.tolerance * (1 + t.q.norm());
+  }
+  failure.iterations = iteration;
+  to.statistics.iterations += iteration;
+  to.statistics.iterations_max = std::max<double>(to.statistics.iterations_max, iteration);
+  if (converged) accept(c, from, b0, b1, t, to);
+  return converged;
+}
+
+void Hht::accept(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b0, const Boundary& b1, const Trial& t,
+                 MechanicalState& to) const {
+  to.q = t.q;
+  to.v = t.v;
+  to.a = t.a;
+  // A rod that sticks has no acceleration; HHT's own would ring and make it crawl.
+  for (int j = 0; j < 2; ++j)
+    if (t.angle_slope[j] == 0) to.a[joint_dof[j]] = 0;
+  to.s = t.s;
+  to.internal = t.internal;
+  // The reaction of an imposed motion from the balance at the end of the step itself, where the acceleration
+  // is known to second order; HHT's weighted balance would give the force of an earlier instant.
+  to.contact_force =
+      head_imposed() ? b1.uplift[0] - m_.mass[U1] * b1.acceleration - t.internal[U1] : t.contact_force;
+  to.boundary = b1;
+
+  to.loss_power = m_.damping_power(t.v);
+  for (int j = 0; j < 2; ++j) to.loss_power += m_.moment_bound[j] * t.s[j] * t.v[joint_dof[j]];
+  to.dissipated = from.dissipated + 0.5 * c.h * (from.loss_power + to.loss_power);
+  Vector5 push = m_.preload;
+  push[U1] -= 0.5 * (from.contact_force + to.contact_force);
+  for (int k = 0; k < 3; ++k) push[mass_dof[k]] += 0.5 * (b0.uplift[k] + b1.uplift[k]);
+  to.work = from.work + push.dot(to.q - from.q);
+  to.statistics.steps += 1;
+}
+
+}  // namespace zspring

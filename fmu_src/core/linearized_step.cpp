@@ -1,0 +1,97 @@
+#include "linearized_step.hpp"
+
+namespace zspring {
+namespace {
+
+constexpr int joint_dof[] = {ALPHA, BETA};
+constexpr int mass_dof[] = {U1, U2, U3};
+
+double head_force_change(const Parameters& p, bool closed, const Boundary& db, double du, double dv) {
+  if (p.drive == Drive::Force) return db.contact_force;
+  return closed ? p.contact_k * (du - db.position) + p.contact_c * (dv - db.velocity) : 0;
+}
+
+}  // namespace
+
+MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, const Boundary& b0, const Boundary& b1, double h,
+                                const MechanicalState& to, const MechanicalState& dfrom, const Boundary& db0,
+                                const Boundary& db1) {
+  const Mechanics& m = hht.mechanics();
+  const Parameters& p = m.parameters;
+  const HhtCoefficients c(m, h);
+  const bool imposed = hht.head_imposed();
+
+  Trial t;
+  t.x = to.a;
+  t.v = to.v;
+  for (int j = 0; j < 2; ++j) t.x[joint_dof[j]] = c.rho[j] * to.v[joint_dof[j]] + to.s[j];
+  hht.evaluate(c, from, b1, false, t);
+
+  // With the unknowns held: the part of the variation that the old state brings.
+  MechanicalState d;
+  const Vector5 dv_predicted = dfrom.v + c.old_velocity * dfrom.a;
+  d.q = dfrom.q + c.h * dfrom.v + c.old_position * dfrom.a;
+  d.v = dv_predicted;
+  for (int i : joint_dof) {
+    d.a[i] = -dv_predicted[i] / c.gamma_h;
+    d.q[i] += c.beta_h2 * d.a[i];
+    d.v[i] = 0;
+  }
+  if (imposed) {
+    d.q[U1] = db1.position;
+    d.v[U1] = db1.velocity;
+    d.a[U1] = db1.acceleration;
+  }
+
+  Vector5 old = dfrom.internal;
+  Vector5 now = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v);
+  for (int k = 0; k < 3; ++k) {
+    old[mass_dof[k]] -= db0.uplift[k];
+    now[mass_dof[k]] -= db1.uplift[k];
+  }
+  if (!imposed) {
+    bool closed;
+    hht.head_force(b0, from.q[U1], from.v[U1], closed);
+    old[U1] += head_force_change(p, closed, db0, dfrom.q[U1], dfrom.v[U1]);
+    now[U1] += head_force_change(p, t.closed, db1, d.q[U1], d.v[U1]);
+  }
+  Vector5 x = m.mass.cwiseProduct(d.a) + c.weight * now - c.alpha * old;
+  if (imposed) x[U1] = 0;
+  hht.solve(c, t, x);
+
+  for (int i : mass_dof) {
+    if (i == U1 && imposed) continue;
+    d.a[i] -= x[i];
+    d.v[i] -= c.gamma_h * x[i];
+    d.q[i] -= c.beta_h2 * x[i];
+  }
+  for (int j = 0; j < 2; ++j) {
+    const int i = joint_dof[j];
+    d.a[i] -= t.acceleration_slope[j] * x[i];
+    d.v[i] -= c.gamma_h * t.acceleration_slope[j] * x[i];
+    d.q[i] -= t.angle_slope[j] * x[i];
+    d.s[j] = -t.moment_slope[j] * x[i];
+    if (t.angle_slope[j] == 0) d.a[i] = 0;
+  }
+  d.internal = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v);
+  for (int j = 0; j < 2; ++j) d.internal[joint_dof[j]] += m.moment_bound[j] * d.s[j];
+  d.contact_force = imposed ? db1.uplift[0] - m.mass[U1] * db1.acceleration - d.internal[U1]
+                            : head_force_change(p, t.closed, db1, d.q[U1], d.v[U1]);
+  d.boundary = db1;
+
+  d.loss_power = 2 * to.v.dot(m.damping_force(d.v));
+  for (int j = 0; j < 2; ++j)
+    d.loss_power += m.moment_bound[j] * (d.s[j] * to.v[joint_dof[j]] + to.s[j] * d.v[joint_dof[j]]);
+  d.dissipated = dfrom.dissipated + 0.5 * h * (dfrom.loss_power + d.loss_power);
+  Vector5 push = m.preload, dpush = Vector5::Zero();
+  push[U1] -= 0.5 * (from.contact_force + to.contact_force);
+  dpush[U1] -= 0.5 * (dfrom.contact_force + d.contact_force);
+  for (int k = 0; k < 3; ++k) {
+    push[mass_dof[k]] += 0.5 * (b0.uplift[k] + b1.uplift[k]);
+    dpush[mass_dof[k]] += 0.5 * (db0.uplift[k] + db1.uplift[k]);
+  }
+  d.work = dfrom.work + push.dot(d.q - dfrom.q) + dpush.dot(to.q - from.q);
+  return d;
+}
+
+}  // namespace zspring

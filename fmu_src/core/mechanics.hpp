@@ -1,0 +1,62 @@
+// The pantograph as a mechanical system: q = [u1, alpha, beta, u2, u3] = head, rod angles, upper and lower frame.
+//
+//   M a + C v + Fe(q) + Ff(v) = P + Fext - Fc e1
+//
+// M = diag(m1, J1, J2, m2, m3); dampers c1 (u1-u2), c2 (u2-u3), c3 (u3-base); springs k2, k3 and the head
+// suspension; Ff the joint friction moments; P the constant preload that balances the static state under
+// Fc = static_force, the origin of u1, u2, u3.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "friction.hpp"
+#include "parameters.hpp"
+#include "zspring.hpp"
+
+namespace zspring {
+
+using Vector2 = Eigen::Matrix<double, 2, 1>;
+using Vector5 = Eigen::Matrix<double, 5, 1>;
+using Matrix5 = Eigen::Matrix<double, 5, 5>;
+
+enum Dof { U1, ALPHA, BETA, U2, U3 };
+
+constexpr const char* dof_name[] = {"head", "rod alpha", "rod beta", "upper frame", "lower frame"};
+
+class Mechanics {
+ public:
+  // Throws ParameterError for parameters that make no solvable model.
+  explicit Mechanics(const Parameters& p);
+
+  // Force and tangent of all springs less the preload, at q. False where the spring has no direction.
+  bool springs(const Vector5& q, Vector5& force, Matrix4& head_tangent) const;
+
+  Vector5 spring_force_change(const Matrix4& head_tangent, const Vector5& dq) const;
+
+  Vector5 damping_force(const Vector5& v) const;
+  double damping_power(const Vector5& v) const;
+  double kinetic_energy(const Vector5& v) const;
+  // Strain energy above that of the static state, J.
+  double strain_energy(const Vector5& q) const;
+
+  ZSpringGeometry spring(const Vector5& q) const;  // zeros with Suspension::Linear
+
+  Parameters parameters;
+  StaticStiffness stiffness;
+  FrictionLaw law;
+  Vector2 moment_bound;  // N m, scale of s = moment / bound; 1 where the law knows no bound
+  Vector5 mass;
+  Vector5 preload;
+  Vector5 rest;             // static q: 0 but for the angles
+  Matrix4 static_tangent;   // head suspension at rest
+  double load;              // N, m1 gravity + static_force
+
+ private:
+  bool head_response(const Vector5& q, ElementResponse& out) const;
+
+  StaticState static_;  // not used with Suspension::Linear
+  Vector4 head_preload_ = Vector4::Zero();
+  double strain_at_rest_ = 0;
+};
+
+}  // namespace zspring

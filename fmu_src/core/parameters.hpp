@@ -1,0 +1,97 @@
+// What a user can set and read: parameters, inputs and outputs of the pantograph.
+//
+// SI units throughout. Vertical quantities are upward positive and measured from the static state under
+// `static_force`; angles in rad. There are no default values here: modelDescription.xml holds them.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+
+namespace zspring {
+
+enum class Drive { Force = 1, Displacement, Wire, Bench };
+enum class Suspension { ZSpring = 1, Linear, LinearLocked, LinearFree };
+enum class Friction { Regularized = 1, Coulomb, Locked, Free };
+enum class Tangent { Resolvent = 1, Mean, Secant, Exact };
+
+// Two rigid rods and one spring; k, J1, J2 and Mf are the totals of the four real oblique springs.
+struct ZSpringParameters {
+  double k;       // N/m, > 0
+  double l0;      // m, natural length, >= 0
+  double L1, L2;  // m, rod lengths, > 0
+  double d;       // m, horizontal distance of the two joints, > 0
+  double J1, J2;  // kg m2, rod inertia about its joint, >= 0
+  double Mf;      // N m, friction moment bound of each joint, >= 0
+  double tau;     // s, regularisation Mf tanh(tau w), > 0
+};
+
+struct SolverParameters {
+  double step;       // s, largest internal step
+  double hht_alpha;  // [-1/3, 0]
+  Tangent tangent;
+  double tolerance;  // of Newton's method, see hht.hpp
+  int max_iterations;
+};
+
+struct Parameters {
+  Drive drive;
+  Suspension suspension;
+  Friction friction;
+  double m1, m2, m3;  // kg; head, upper frame, lower frame; m3 may be 0
+  double c1, c2, c3;  // N s/m
+  double k1, k2, k3;  // N/m; k1 for Suspension::Linear only
+  ZSpringParameters zspring;
+  double static_force;  // N
+  double gravity;       // m/s2
+  double contact_k;     // N/m, Drive::Wire
+  double contact_c;     // N s/m, Drive::Wire
+  double bench_frequency;     // Hz, Drive::Bench
+  double bench_acceleration;  // m/s2, peak
+  SolverParameters solver;
+};
+
+// An input between communication points: value + rate tau + 1/2 curvature tau^2, tau since the last one.
+struct Signal {
+  double value = 0;
+  double rate = 0;
+  double curvature = 0;
+  bool has_rate = false;  // derivatives were given: `value` belongs to the begin of the step
+  bool has_curvature = false;
+
+  double at(double tau) const { return value + tau * (rate + 0.5 * curvature * tau); }
+};
+
+struct Inputs {
+  Signal contact_force;      // N, Drive::Force
+  Signal head_displacement;  // m, Drive::Displacement
+  Signal wire_height;        // m, Drive::Wire
+  Signal uplift[3];          // N, on head, upper frame, lower frame
+};
+
+struct Outputs {
+  double head_z, head_v, head_a;
+  double upper_frame_z, upper_frame_v;
+  double lower_frame_z, lower_frame_v;
+  double contact_force;
+  double contact_closed;
+  double alpha, beta;
+  double spring_length, spring_force;
+  double moment_alpha, moment_beta;
+  double kinetic, elastic, dissipated, work;
+  double iterations, iterations_max, steps, refinements;
+  double H_re, H_im, H_change, periods;
+};
+
+// The calculated parameters; all 0 with Suspension::Linear.
+struct StaticStiffness {
+  double theta = 0;     // rad
+  double k_locked = 0;  // N/m
+  double k_free = 0;    // N/m
+};
+
+// Parameters that make no model: the message names the variable, its value and what is allowed.
+class ParameterError : public std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+}  // namespace zspring

@@ -1,0 +1,238 @@
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "linearized_step.hpp"
+
+namespace zspring {
+namespace {
+
+constexpr int most_halvings = 10;         // to 1/1024 of the internal step
+constexpr double rounding_of_time = 1e-9;  // of an internal step: hosts add up their communication points
+constexpr int mass_dof[] = {U1, U2, U3};
+
+const Signal& position_input(Drive drive, const Inputs& u) {
+  return drive == Drive::Wire ? u.wire_height : u.head_displacement;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : mechanics_(parameters), hht_(mechanics_) {
+  state_.mechanical = at_rest(inputs);
+  state_.motion.position = state_.mechanical.boundary.position;
+  before_ = state_;
+  held_.inputs = inputs;
+}
+
+Boundary Simulation::initial_boundary(const Inputs& u) const {
+  Boundary b;
+  for (int k = 0; k < 3; ++k) b.uplift[k] = u.uplift[k].value;
+  b.contact_force = u.contact_force.value;
+  // The wire begins where it is; the head begins in the static state, whatever its target.
+  if (mechanics_.parameters.drive == Drive::Wire) b.position = u.wire_height.value;
+  return b;
+}
+
+MechanicalState Simulation::at_rest(const Inputs& inputs) const {
+  MechanicalState s;
+  Matrix4 tangent;
+  s.q = mechanics_.rest;
+  mechanics_.springs(s.q, s.internal, tangent);
+  s.boundary = initial_boundary(inputs);
+  bool closed;
+  s.contact_force = hht_.head_imposed() ? s.boundary.uplift[0] - s.internal[U1] : hht_.head_force(s.boundary, 0, 0, closed);
+  s.a = acceleration(hht_, s);
+  return s;
+}
+
+// A force that jumps at a communication point takes HHT's memory of the acceleration with it; else the first
+// step would still feel the old force, an error of first order.
+void Simulation::meet(const Boundary& b0, MechanicalState& s) const {
+  const Vector5& mass = mechanics_.mass;
+  for (int k = 0; k < 3; ++k)
+    if (mass[mass_dof[k]] > 0) s.a[mass_dof[k]] += (b0.uplift[k] - s.boundary.uplift[k]) / mass[mass_dof[k]];
+  if (mechanics_.parameters.drive == Drive::Force) {
+    s.a[U1] -= (b0.contact_force - s.contact_force) / mass[U1];
+    s.contact_force = b0.contact_force;
+  }
+  s.boundary = b0;
+}
+
+template <class BoundaryAt, class OnStep>
+bool Simulation::cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin,
+                       double h, int halvings, OnStep& on_step, AdvanceFailure& failure) const {
+  MechanicalState next;
+  if (hht_.step(s, b0, b1, h, next, failure.step)) {
+    on_step(s, next, b0, b1, h);
+    s = next;
+    return true;
+  }
+  s.statistics = next.statistics;
+  failure.time = begin;
+  if (halvings == most_halvings) return false;
+  s.statistics.refinements += 1;
+  Boundary middle;
+  boundary(begin + 0.5 * h, middle);
+  return cover(s, boundary, b0, middle, begin, 0.5 * h, halvings + 1, on_step, failure) &&
+         cover(s, boundary, middle, b1, begin + 0.5 * h, 0.5 * h, halvings + 1, on_step, failure);
+}
+
+template <class OnStep>
+bool Simulation::run(SimulationState& state, const Held& held, OnStep&& on_step, AdvanceFailure& failure) const {
+  const Parameters& p = mechanics_.parameters;
+  const double H = held.length, largest = p.solver.step;
+  MechanicalState& s = state.mechanical;
+  Boundary b0, b1;
+  const auto forces = [&](double tau, Boundary& b) {
+    for (int k = 0; k < 3; ++k) b.uplift[k] = held.inputs.uplift[k].at(tau);
+    b.contact_force = held.inputs.contact_force.at(tau);
+  };
+
+  if (p.drive == Drive::Bench) {
+    Bench bench(state.bench);
+    bench.tune(held.bench_frequency, held.bench_acceleration, largest);
+    const double rounding = rounding_of_time * bench.grid_step();
+    double left = H + state.bench.carry;
+    double done = 0;  // when the bench's present node or cut was, s since the begin of the communication step
+    const auto boundary = [&](double tau, Boundary& b) {
+      forces(tau, b);
+      bench.motion(tau - done, b);
+    };
+    boundary(0, b0);
+    meet(b0, s);
+    while (left > rounding) {
+      const bool reaches_node = left >= bench.to_next_node() - rounding;
+      const double h = reaches_node ? bench.to_next_node() : left;
+      boundary(done + h, b1);
+      const double force = s.contact_force - p.static_force;
+      if (!cover(s, boundary, b0, b1, done, h, 0, on_step, failure)) return false;
+      bench.advance(h, reaches_node, force, s.contact_force - p.static_force);
+      b0 = b1;
+      done += h;
+      left -= h;
+    }
+    state.bench.carry = left;
+    return true;
+  }
+
+  const ImposedMotion motion(state.motion, position_input(p.drive, held.inputs), H, p.solver.hht_alpha);
+  const auto boundary = [&](double tau, Boundary& b) {
+    forces(tau, b);
+    if (p.drive != Drive::Force) motion.at(tau, b);
+  };
+  const double n = std::max(1.0, std::ceil(H / largest - rounding_of_time));
+  boundary(0, b0);
+  meet(b0, s);
+  for (double i = 0; i < n; ++i) {
+    boundary((i + 1) / n * H, b1);
+    if (!cover(s, boundary, b0, b1, i / n * H, H / n, 0, on_step, failure)) return false;
+    b0 = b1;
+  }
+  if (p.drive != Drive::Force) state.motion = motion.end();
+  return true;
+}
+
+bool Simulation::advance(const Held& held, AdvanceFailure& failure) {
+  const SimulationState begin = state_;
+  const auto nothing = [](const MechanicalState&, const MechanicalState&, const Boundary&, const Boundary&, double) {};
+  if (!run(state_, held, nothing, failure)) {
+    state_ = begin;
+    return false;
+  }
+  before_ = begin;
+  held_ = held;
+  return true;
+}
+
+Outputs Simulation::output_rates() const {
+  const MechanicalState& s = state_.mechanical;
+  MechanicalState d;
+  if (held_.length > 0) {
+    SimulationState again = before_;
+    AdvanceFailure failure;
+    const auto quotient = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0, const Boundary& b1,
+                              double h) {
+      d.internal = (to.internal - from.internal) / h;
+      d.s = (to.s - from.s) / h;
+      d.contact_force = (to.contact_force - from.contact_force) / h;
+      d.boundary.uplift = (b1.uplift - b0.uplift) / h;
+      d.boundary.acceleration = (b1.acceleration - b0.acceleration) / h;
+    };
+    run(again, held_, quotient, failure);
+  }
+  d.q = s.v;
+  d.v = acceleration(hht_, s);
+  d.dissipated = s.loss_power;
+  Vector5 push = mechanics_.preload;
+  push[U1] -= s.contact_force;
+  for (int k = 0; k < 3; ++k) push[mass_dof[k]] += s.boundary.uplift[k];
+  d.work = push.dot(s.v);
+  return zspring::outputs_change(hht_, s, d);
+}
+
+Outputs Simulation::outputs_change(const Inputs& direction) const {
+  const Parameters& p = mechanics_.parameters;
+  const MechanicalState& s = state_.mechanical;
+  if (held_.length == 0) {
+    MechanicalState d;
+    d.boundary = initial_boundary(direction);
+    if (p.drive == Drive::Force) d.contact_force = d.boundary.contact_force;
+    if (p.drive == Drive::Wire) d.contact_force = s.contact_force > 0 ? -p.contact_k * d.boundary.position : 0;
+    if (hht_.head_imposed()) d.contact_force = d.boundary.uplift[0];
+    return zspring::outputs_change(hht_, s, d);
+  }
+  // Only values vary; the way a position moves does not.
+  Inputs du = direction;
+  Signal& position = p.drive == Drive::Wire ? du.wire_height : du.head_displacement;
+  const Signal& held_position = position_input(p.drive, held_.inputs);
+  position.has_rate = held_position.has_rate;
+  position.has_curvature = held_position.has_curvature;
+  const ImposedMotion motion(MotionState(), position, held_.length, p.solver.hht_alpha);
+  const bool moves = p.drive == Drive::Displacement || p.drive == Drive::Wire;
+
+  const auto boundary_change = [&](double tau) {
+    Boundary b;
+    for (int k = 0; k < 3; ++k) b.uplift[k] = du.uplift[k].value;
+    b.contact_force = du.contact_force.value;
+    if (moves) motion.at(tau, b);
+    return b;
+  };
+  MechanicalState d;
+  Boundary db0 = boundary_change(0);
+  meet(db0, d);
+  double tau = 0;
+  const auto linearized = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0, const Boundary& b1,
+                              double h) {
+    tau += h;
+    const Boundary db1 = boundary_change(tau);
+    d = linearized_step(hht_, from, b0, b1, h, to, d, db0, db1);
+    db0 = db1;
+  };
+  SimulationState again = before_;
+  AdvanceFailure failure;
+  run(again, held_, linearized, failure);
+  return zspring::outputs_change(hht_, s, d);
+}
+
+const char* Simulation::describe_imbalance(char* text, int size) const {
+  const Parameters& p = mechanics_.parameters;
+  const Inputs& u = held_.inputs;
+  const auto describe = [&](const char* name, double value, const char* unit, double balanced) {
+    std::snprintf(text, static_cast<size_t>(size), "%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
+                  name, value, unit, balanced, unit);
+    return text;
+  };
+  if (p.drive == Drive::Force && u.contact_force.value != p.static_force)
+    return describe("contact_force", u.contact_force.value, "N", p.static_force);
+  if (p.drive == Drive::Displacement && u.head_displacement.value != 0)
+    return describe("head_displacement", u.head_displacement.value, "m", 0);
+  if (p.drive == Drive::Wire && u.wire_height.value != 0) return describe("wire_height", u.wire_height.value, "m", 0);
+  const char* names[] = {"uplift.head", "uplift.upper_frame", "uplift.lower_frame"};
+  for (int k = 0; k < 3; ++k)
+    if (u.uplift[k].value != 0 && !(k == 0 && hht_.head_imposed())) return describe(names[k], u.uplift[k].value, "N", 0);
+  return nullptr;
+}
+
+}  // namespace zspring

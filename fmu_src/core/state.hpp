@@ -1,0 +1,51 @@
+// Everything that changes in a simulation step: copied to go back, written out to be restored bit for bit.
+#pragma once
+
+#include "mechanics.hpp"
+
+namespace zspring {
+
+// What the surroundings do at one instant.
+struct Boundary {
+  Eigen::Vector3d uplift = Eigen::Vector3d::Zero();  // N, on u1, u2, u3
+  double contact_force = 0;                          // N, Drive::Force
+  double position = 0;                               // m, of the imposed head or the wire
+  double velocity = 0;                               // m/s
+  double acceleration = 0;                           // m/s2
+};
+
+struct Statistics {
+  double iterations = 0;      // Newton iterations, failed attempts included
+  double iterations_max = 0;  // of the worst attempt
+  double steps = 0;           // accepted internal steps
+  double refinements = 0;     // halvings
+};
+
+// HHT's `a` belongs to t + hht_alpha h, not to t: it is the integrator's memory, not an output.
+struct MechanicalState {
+  Vector5 q = Vector5::Zero();
+  Vector5 v = Vector5::Zero();
+  Vector5 a = Vector5::Zero();
+  Vector5 internal = Vector5::Zero();  // C v + Fe(q) + Ff(v) - P
+  Vector2 s = Vector2::Zero();         // friction moment / moment_bound
+  double contact_force = 0;            // N, the force that acts, in every drive
+  double dissipated = 0;               // J since the start
+  double work = 0;                     // J since the start
+  double loss_power = 0;               // W
+  Boundary boundary;                   // at this instant, as the last step saw it
+  Statistics statistics;
+};
+
+template <class Visitor>
+void visit(Boundary& b, Visitor&& f) {
+  f(b.uplift), f(b.contact_force), f(b.position), f(b.velocity), f(b.acceleration);
+}
+
+template <class Visitor>
+void visit(MechanicalState& s, Visitor&& f) {
+  f(s.q), f(s.v), f(s.a), f(s.internal), f(s.s), f(s.contact_force), f(s.dissipated), f(s.work), f(s.loss_power);
+  visit(s.boundary, f);
+  f(s.statistics.iterations), f(s.statistics.iterations_max), f(s.statistics.steps), f(s.statistics.refinements);
+}
+
+}  // namespace zspring

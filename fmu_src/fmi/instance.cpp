@@ -1,0 +1,266 @@
+#include "instance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace zspring::fmi {
+namespace {
+
+template <class... Values>
+[[noreturn]] void refuse(const char* format, Values... values) {
+  char text[512];
+  std::snprintf(text, sizeof text, format, values...);
+  throw Refusal(text);
+}
+
+// "m1 = -1 kg"
+std::string described(const Variable& v, double x) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s = %.10g%s%s", v.name, x, *v.unit ? " " : "", v.unit);
+  return text;
+}
+
+void check_value(const Variable& v, double x) {
+  if (!std::isfinite(x)) refuse("%s: must be a finite number", described(v, x).c_str());
+  if (*v.allowed && (x < v.min || x > v.max)) refuse("%s: must be one of %s", described(v, x).c_str(), v.allowed);
+  if (x < v.min) refuse("%s: must be at least %.10g", described(v, x).c_str(), v.min);
+  if (x > v.max) refuse("%s: must be at most %.10g", described(v, x).c_str(), v.max);
+}
+
+bool same_type(Type a, Type b) {
+  const auto integer = [](Type t) { return t == Type::Enumeration ? Type::Integer : t; };
+  return integer(a) == integer(b);
+}
+
+}  // namespace
+
+const Variable& Instance::variable(unsigned reference, Type type) const {
+  if (reference >= vr::count) refuse("value reference %u: must be below %u", reference, static_cast<unsigned>(vr::count));
+  const Variable& v = variables[reference];
+  if (!same_type(v.type, type)) refuse("%s: is of type %s, not %s", v.name, type_name(v.type), type_name(type));
+  return v;
+}
+
+void Instance::reset() {
+  phase = Instantiated;
+  for (const Variable& v : variables) {
+    if (v.binding.set_parameter) v.binding.set_parameter(parameters_, v.start);
+  }
+  inputs_ = {};
+  for (const Variable& v : variables)
+    if (v.binding.input) v.binding.input(inputs_).value = v.start;
+  experiment_ = {};
+  time_ = 0;
+  stepped_ = false;
+  simulation_.reset();
+  outputs_.reset();
+}
+
+void Instance::setup_experiment(const Experiment& e) {
+  if (!std::isfinite(e.start)) refuse("startTime = %g s: must be a finite number", e.start);
+  if (e.has_stop && !(e.stop >= e.start)) refuse("stopTime = %.10g s: must not be before startTime = %.10g s", e.stop, e.start);
+  experiment_ = e;
+  time_ = e.start;
+}
+
+void Instance::enter_initialization() { phase = Initialization; }
+
+void Instance::exit_initialization() {
+  simulation();
+  phase = StepComplete;
+}
+
+void Instance::terminate() {
+  const Outputs y = simulation().outputs();
+  char text[160];
+  std::snprintf(text, sizeof text, "%.0f steps, %.3g iterations a step, at most %.0f, %.0f refinements", y.steps,
+                y.steps > 0 ? y.iterations / y.steps : 0, y.iterations_max, y.refinements);
+  log.write(fmi2OK, Category::logSolver, text);
+  phase = Terminated;
+}
+
+Simulation& Instance::simulation() {
+  if (!simulation_) {
+    simulation_.emplace(parameters_, inputs_);
+    outputs_.reset();
+  }
+  return *simulation_;
+}
+
+double Instance::get(unsigned reference, Type type) {
+  const Variable& v = variable(reference, type);
+  const Binding& b = v.binding;
+  if (b.parameter) return b.parameter(parameters_);
+  if (b.input) return b.input(inputs_).value;
+  if (b.calculated) return b.calculated(simulation().stiffness());
+  Simulation& s = simulation();
+  if (!outputs_) outputs_ = s.outputs();
+  const double y = b.output(*outputs_);
+  return type == Type::Real ? y : std::min<double>(y, std::numeric_limits<fmi2Integer>::max());
+}
+
+void Instance::check_settable(const Variable& v) const {
+  if (v.causality == Causality::Output || v.causality == Causality::CalculatedParameter)
+    refuse("%s: is calculated by the FMU and cannot be set", v.name);
+  if (v.causality == Causality::Parameter && !v.tunable && !(phase & (Instantiated | Initialization)))
+    refuse("%s: is a fixed parameter and can be set before the end of initialization only", v.name);
+}
+
+void Instance::set(const fmi2ValueReference references[], size_t n, Type type, const double values[]) {
+  for (size_t i = 0; i < n; ++i) {
+    const Variable& v = variable(references[i], type);
+    check_settable(v);
+    check_value(v, values[i]);
+  }
+  for (size_t i = 0; i < n; ++i) {
+    const Binding& b = variables[references[i]].binding;
+    if (b.set_parameter)
+      b.set_parameter(parameters_, values[i]);
+    else
+      b.input(inputs_).value = values[i];
+  }
+  if (phase & (Instantiated | Initialization)) simulation_.reset();
+}
+
+void Instance::set_input_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[],
+                                     const double values[]) {
+  for (size_t i = 0; i < n; ++i) {
+    const Variable& v = variable(references[i], Type::Real);
+    if (!v.binding.input) refuse("%s: is no input and has no input derivatives", v.name);
+    if (orders[i] != 1 && orders[i] != 2) refuse("%s: derivative of order %d; must be 1 or 2", v.name, orders[i]);
+    if (!std::isfinite(values[i])) refuse("%s: derivative of order %d = %g: must be a finite number", v.name, orders[i], values[i]);
+  }
+  for (size_t i = 0; i < n; ++i) {
+    Signal& s = variables[references[i]].binding.input(inputs_);
+    (orders[i] == 1 ? s.rate : s.curvature) = values[i];
+    (orders[i] == 1 ? s.has_rate : s.has_curvature) = true;
+  }
+}
+
+double Instance::output_derivative(unsigned reference, int order) {
+  const Variable& v = variable(reference, Type::Real);
+  if (!v.binding.output) refuse("%s: is no output and has no output derivatives", v.name);
+  if (order != 1) refuse("%s: derivative of order %d; must be 1", v.name, order);
+  return v.binding.output(simulation().output_rates());
+}
+
+void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown, const fmi2ValueReference known[],
+                                      size_t n_known, const double direction[], double result[]) {
+  Inputs change;
+  for (size_t i = 0; i < n_known; ++i) {
+    const Variable& v = variable(known[i], Type::Real);
+    if (!v.binding.input) refuse("%s: must be an input to be known in a directional derivative", v.name);
+    if (!std::isfinite(direction[i])) refuse("%s: direction = %g: must be a finite number", v.name, direction[i]);
+    v.binding.input(change).value = direction[i];
+  }
+  for (size_t i = 0; i < n_unknown; ++i) {
+    const Variable& v = variable(unknown[i], Type::Real);
+    if (v.binding.parameter || v.binding.input) refuse("%s: must be an output to be unknown in a directional derivative", v.name);
+  }
+  const Outputs y = simulation().outputs_change(change);
+  for (size_t i = 0; i < n_unknown; ++i) {
+    const Binding& b = variables[unknown[i]].binding;
+    result[i] = b.output ? b.output(y) : 0;
+  }
+}
+
+fmi2Status Instance::step(double from, double length) {
+  if (!(length > 0) || !std::isfinite(length)) refuse("communicationStepSize = %.10g s: must be above 0", length);
+  // Hosts add up their communication points; a difference that small moves nothing.
+  const double rounding = 1e-4 * length + 1e-12 * std::abs(time_);
+  if (!(std::abs(from - time_) <= rounding))
+    refuse("currentCommunicationPoint = %.17g s: must be %.17g s, where the last step ended", from, time_);
+  const double to = from + length;
+  if (experiment_.has_stop && to > experiment_.stop + rounding)
+    refuse("communicationStepSize = %.10g s: leads to %.17g s, past stopTime = %.17g s", length, to, experiment_.stop);
+
+  char text[320];
+  Simulation& s = *simulation_;
+  if (!stepped_ && log.enabled(Category::logStatusWarning) && s.describe_imbalance(text, sizeof text))
+    log.write(fmi2OK, Category::logStatusWarning, text);
+  const bool report = log.enabled(Category::logSolver);
+  const double refinements = report ? s.outputs().refinements : 0;
+  AdvanceFailure failure;
+  const Held held{inputs_, parameters_.bench_frequency, parameters_.bench_acceleration, length};
+  outputs_.reset();
+  if (!s.advance(held, failure)) {
+    phase = StepFailed;
+    std::snprintf(text, sizeof text,
+                  "t = %.10g s: no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g after %d "
+                  "iterations. The state is that of %.10g s",
+                  from + failure.time, dof_name[failure.step.dof], failure.step.residual, failure.step.iterations, time_);
+    log.write(fmi2Discard, Category::logStatusDiscard, text);
+    return fmi2Discard;
+  }
+  stepped_ = true;
+  phase = StepComplete;
+  time_ = to;
+  if (report && s.outputs().refinements > refinements) {
+    std::snprintf(text, sizeof text, "t = %.10g s: %.0f halvings of the internal step", time_, s.outputs().refinements - refinements);
+    log.write(fmi2OK, Category::logSolver, text);
+  }
+  return fmi2OK;
+}
+
+template <class Visitor>
+void Instance::visit(Visitor&& f) {
+  for (const Variable& v : variables) {
+    if (!v.binding.parameter) continue;
+    double x = v.binding.parameter(parameters_);
+    f(x);
+    v.binding.set_parameter(parameters_, x);
+  }
+  zspring::visit(inputs_, f);
+  f(experiment_.start), f(experiment_.stop), f(experiment_.has_stop), f(time_), f(stepped_);
+}
+
+namespace {
+
+struct Writer {
+  std::vector<double>& out;
+  void operator()(double x) { out.push_back(x); }
+  void operator()(bool x) { out.push_back(x); }
+  template <class Vector>
+  void operator()(const Vector& x) {
+    out.insert(out.end(), x.data(), x.data() + x.size());
+  }
+};
+
+struct Reader {
+  const double* in;
+  void operator()(double& x) { x = *in++; }
+  void operator()(bool& x) { x = *in++ != 0; }
+  template <class Vector>
+  void operator()(Vector& x) {
+    for (double& e : x.reshaped()) e = *in++;
+  }
+};
+
+}  // namespace
+
+std::vector<double> Instance::snapshot() {
+  std::vector<double> numbers{static_cast<double>(phase)};
+  Writer write{numbers};
+  visit(write);
+  // A simulation that parameters or inputs have outdated is not part of the state.
+  write(simulation_.has_value());
+  if (simulation_) simulation_->visit_state(write);
+  return numbers;
+}
+
+void Instance::restore(const std::vector<double>& numbers) {
+  Reader read{numbers.data()};
+  double stored_phase;
+  read(stored_phase);
+  phase = static_cast<Phase>(stored_phase);
+  visit(read);
+  bool has_simulation;
+  read(has_simulation);
+  simulation_.reset();
+  outputs_.reset();
+  if (has_simulation) simulation().visit_state(read);
+}
+
+}  // namespace zspring::fmi

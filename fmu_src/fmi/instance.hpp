@@ -1,0 +1,85 @@
+// One FMU instance: its phase, its values and its simulation. Knows the rules of FMI 2.0, no physics.
+//
+// A call that breaks a rule throws Refusal before anything has changed; fmi2_functions.cpp turns it into a log
+// line and fmi2Error.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/simulation.hpp"
+#include "log.hpp"
+#include "variables.hpp"
+
+namespace zspring::fmi {
+
+// The states of section 4.2.3, as bits so that a call can name those in which it is allowed.
+enum Phase : unsigned {
+  Instantiated = 1,
+  Initialization = 2,
+  StepComplete = 4,
+  StepFailed = 8,  // after fmi2Discard; the state is that before the step, so stepping on is possible
+  Terminated = 16,
+  Error = 32,
+};
+
+class Refusal : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Experiment {
+  double start = 0;
+  double stop = 0;
+  bool has_stop = false;
+};
+
+class Instance {
+ public:
+  Instance(const fmi2CallbackFunctions& functions, const char* name, bool debug)
+      : log(functions, name, debug) {
+    reset();
+  }
+
+  void setup_experiment(const Experiment& e);
+  void enter_initialization();
+  void exit_initialization();
+  void terminate();
+  void reset();
+
+  double get(unsigned reference, Type type);
+  // All or nothing.
+  void set(const fmi2ValueReference references[], size_t n, Type type, const double values[]);
+  void set_input_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[], const double values[]);
+  double output_derivative(unsigned reference, int order);
+  void directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown, const fmi2ValueReference known[],
+                              size_t n_known, const double direction[], double result[]);
+
+  fmi2Status step(double from, double length);
+  double last_successful_time() const { return time_; }
+
+  // Everything but the log settings, as numbers.
+  std::vector<double> snapshot();
+  void restore(const std::vector<double>& numbers);
+
+  Phase phase;
+  Log log;
+
+ private:
+  const Variable& variable(unsigned reference, Type type) const;
+  void check_settable(const Variable& v) const;
+  Simulation& simulation();  // built anew where parameters or inputs changed before the first step
+  template <class Visitor>
+  void visit(Visitor&& f);
+
+  Parameters parameters_;
+  Inputs inputs_;
+  Experiment experiment_;
+  double time_;
+  bool stepped_;
+  std::optional<Simulation> simulation_;
+  std::optional<Outputs> outputs_;  // of the present state, made when asked for
+};
+
+}  // namespace zspring::fmi

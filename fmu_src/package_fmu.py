@@ -1,0 +1,152 @@
+"""Package the FMU: model description, binaries, documentation, licences and icon in one zip.
+
+    python package_fmu.py MODEL_DESCRIPTION FMU PLATFORM=LIBRARY...
+
+The same content gives the same bytes: entries are sorted and carry a fixed time.
+"""
+
+import argparse
+import html
+import os
+import string
+import xml.etree.ElementTree as ET
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+RESOURCES = ROOT / "resources"
+
+# In the order of the documentation: (causality, heading)
+CAUSALITIES = [
+    ("parameter", "Parameters"),
+    ("calculatedParameter", "Calculated parameters"),
+    ("input", "Inputs"),
+    ("output", "Outputs"),
+]
+
+
+def licenses() -> str:
+    """The project's licence and those of what is compiled into the library."""
+    parts = [("ZSpringPantograph", ROOT / "LICENSE")]
+    parts += [(f"Built in: {p.stem}", p) for p in sorted((RESOURCES / "licenses").glob("*.txt"))]
+    rule = "=" * 78
+    texts = [f"{rule}\n{title}\n{rule}\n\n{path.read_text('utf-8').strip()}\n" for title, path in parts]
+    return "\n\n".join(texts)
+
+
+def table(header: list[str], rows: list[list[str]]) -> str:
+    """HTML table of plain-text cells; the first column is set as code."""
+    lines = ["<table>", "<tr>" + "".join(f"<th>{html.escape(h)}</th>" for h in header) + "</tr>"]
+    for first, *others in rows:
+        cells = "".join(f"<td>{html.escape(cell)}</td>" for cell in others)
+        lines.append(f"<tr><td><code>{html.escape(first)}</code></td>{cells}</tr>")
+    return "\n".join([*lines, "</table>"])
+
+
+def enumerations(model: ET.Element) -> dict[str, dict[str, str]]:
+    """Names of the items by value, by enumeration type."""
+    return {
+        simple_type.get("name"): {item.get("value"): item.get("name") for item in simple_type.iter("Item")}
+        for simple_type in model.iter("SimpleType")
+    }
+
+
+def bounds(typed: ET.Element) -> str:
+    """Allowed range in words; empty when there is none."""
+    low, high = typed.get("min"), typed.get("max")
+    if low and high:
+        return f"{low} to {high}"
+    if low:
+        return f"\N{GREATER-THAN OR EQUAL TO} {low}"
+    return f"\N{LESS-THAN OR EQUAL TO} {high}" if high else ""
+
+
+def variable_tables(model: ET.Element) -> str:
+    """One table per causality, with unit, start value and bounds as the model description has them."""
+    items = enumerations(model)
+    parts = []
+    for causality, heading in CAUSALITIES:
+        rows = []
+        for variable in model.find("ModelVariables"):
+            if variable.get("causality") != causality:
+                continue
+            typed = variable[0]
+            declared = typed.get("declaredType")
+            start = typed.get("start", "")
+            note = "; may be changed during the simulation" if variable.get("variability") == "tunable" else ""
+            rows.append([
+                variable.get("name"),
+                declared or typed.get("unit") or typed.tag,
+                items[declared][start] if declared and start else start,
+                bounds(typed),
+                variable.get("description", "") + note,
+            ])
+        # Leave out the columns that are empty in the whole table.
+        header = ["Name", "Unit or type", "Start", "Allowed", "Meaning"]
+        used = [i for i in range(len(header)) if any(row[i] for row in rows)]
+        parts.append(f'<h3 id="{causality}">{heading}</h3>')
+        parts.append(table([header[i] for i in used], [[row[i] for i in used] for row in rows]))
+    return "\n".join(parts)
+
+
+def enumeration_tables(model: ET.Element) -> str:
+    """One table per enumeration type."""
+    parts = []
+    for simple_type in model.iter("SimpleType"):
+        parts.append(f"<h3>{html.escape(simple_type.get('name'))}</h3>")
+        rows = [[i.get("name"), i.get("value"), i.get("description", "")] for i in simple_type.iter("Item")]
+        parts.append(table(["Item", "Value", "Meaning"], rows))
+    return "\n".join(parts)
+
+
+def documentation(model_description: Path) -> str:
+    """The page documentation/index.html, with its tables made from the model description."""
+    model = ET.parse(model_description).getroot()
+    template = string.Template((RESOURCES / "documentation.html").read_text("utf-8"))
+    return template.substitute(
+        version=html.escape(model.get("version")),
+        variables=variable_tables(model),
+        enumerations=enumeration_tables(model),
+    )
+
+
+def write_fmu(model_description: Path, fmu: Path, libraries: dict[str, Path]) -> None:
+    """Write the FMU; `libraries` maps FMI platform names to shared libraries. Never leaves half a file."""
+    entries = {
+        "modelDescription.xml": model_description.read_bytes(),
+        "model.png": (RESOURCES / "model.png").read_bytes(),
+        "documentation/index.html": documentation(model_description).encode(),
+        "documentation/licenses/license.txt": licenses().encode(),
+    }
+    for platform, library in libraries.items():
+        entries[f"binaries/{platform}/{library.name}"] = library.read_bytes()
+
+    unfinished = fmu.with_name(fmu.name + ".part")
+    with zipfile.ZipFile(unfinished, "w") as archive:
+        for name, content in sorted(entries.items()):
+            info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
+            info.compress_type = zipfile.ZIP_DEFLATED
+            info.create_system = 3  # Unix, wherever it is packaged: the permissions below have this form
+            info.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
+            archive.writestr(info, content)
+    os.replace(unfinished, fmu)
+
+
+def library_argument(text: str) -> tuple[str, Path]:
+    platform, _, library = text.partition("=")
+    if not library:
+        raise argparse.ArgumentTypeError(f"{text}: must be PLATFORM=LIBRARY")
+    return platform, Path(library)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("model_description", type=Path)
+    parser.add_argument("fmu", type=Path)
+    parser.add_argument("libraries", type=library_argument, nargs="+", metavar="PLATFORM=LIBRARY")
+    arguments = parser.parse_args()
+    write_fmu(arguments.model_description, arguments.fmu, dict(arguments.libraries))
+
+
+if __name__ == "__main__":
+    main()
