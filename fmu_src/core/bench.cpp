@@ -54,7 +54,7 @@ double Bench::phase_at(double s) const {
   return b_.phase + 2 * pi * (b_.speed.integral(ramp_end) + (node + beyond) / b_.steps_per_period);
 }
 
-void Bench::motion(double tau, Boundary& b) const {
+Phasor Bench::motion(double tau, Boundary& b) const {
   const double s = elapsed() + tau;
   const double phase = phase_at(s), sine = std::sin(phase), cosine = std::cos(phase);
   const double X = b_.amplitude.value(s), dX = b_.amplitude.slope(s), ddX = b_.amplitude.curvature(s);
@@ -62,6 +62,7 @@ void Bench::motion(double tau, Boundary& b) const {
   b.position = X * sine;
   b.velocity = dX * sine + X * w * cosine;
   b.acceleration = (ddX - X * w * w) * sine + (2 * dX * w + X * dw) * cosine;
+  return {sine, cosine};
 }
 
 void Bench::tune(double frequency, double acceleration, double largest_step) {
@@ -89,13 +90,12 @@ void Bench::tune(double frequency, double acceleration, double largest_step) {
   b_.speed = Ramp::to(frequency, f, df, ddf, length);
 }
 
-void Bench::advance(double h, bool reaches_node, double force_begin, double force_end) {
+void Bench::advance(double h, bool reaches_node, Phasor begin, double force_begin, Phasor end, double force_end) {
   if (b_.node >= b_.ramp_steps) {
-    const double begin = phase_at(elapsed()), end = phase_at(elapsed() + h);
     // (1/pi) integral of F sin, F cos over the period.
     const double weight = h * b_.frequency;
-    b_.sin_sum += weight * (force_begin * std::sin(begin) + force_end * std::sin(end));
-    b_.cos_sum += weight * (force_begin * std::cos(begin) + force_end * std::cos(end));
+    b_.sin_sum += weight * (force_begin * begin.sine + force_end * end.sine);
+    b_.cos_sum += weight * (force_begin * begin.cosine + force_end * end.cosine);
   }
   if (!reaches_node) {
     b_.offset += h;

@@ -58,6 +58,10 @@ void visit(BenchState& b, Visitor&& f) {
   f(b.sin_sum), f(b.cos_sum), f(b.periods), f(b.H_re), f(b.H_im), f(b.change);
 }
 
+struct Phasor {
+  double sine, cosine;
+};
+
 class Bench {
  public:
   explicit Bench(BenchState& state) : b_(state) {}
@@ -66,10 +70,10 @@ class Bench {
   void tune(double frequency, double acceleration, double largest_step);
   double grid_step() const;                       // s
   double to_next_node() const;                    // s
-  void motion(double tau, Boundary& b) const;     // tau s from now
-  // Move on by h s, a step that ends at the next node if `reaches_node`; forces (N, less the static one) at its
-  // begin and end.
-  void advance(double h, bool reaches_node, double force_begin, double force_end);
+  Phasor motion(double tau, Boundary& b) const;   // tau s from now
+  // Move on by h s, a step that ends at the next node if `reaches_node`; phases and forces (N, less the static
+  // one) at its begin and end.
+  void advance(double h, bool reaches_node, Phasor begin, double force_begin, Phasor end, double force_end);
 
  private:
   double elapsed() const;            // s since the ramp began

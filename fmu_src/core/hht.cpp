@@ -208,14 +208,21 @@ bool Hht::step(const MechanicalState& from, const Boundary& b0, const Boundary& 
   return converged;
 }
 
+void Hht::prepare(double h, double h_last, MechanicalState& s) const {
+  if (h_last > 0) s.a += m_.parameters.solver.hht_alpha * (h - h_last) * s.a_slope;
+}
+
 void Hht::accept(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b0, const Boundary& b1, const Trial& t,
                  MechanicalState& to) const {
   to.q = t.q;
   to.v = t.v;
   to.a = t.a;
+  // A sliver of a step says little of the slope and would have it magnified by the next.
+  to.a_slope = slope_known(c.h, from.h) ? Vector5((t.a - from.a) / c.h) : from.a_slope;
+  to.h = c.h;
   // A rod that sticks has no acceleration; HHT's own would ring and make it crawl.
   for (int j = 0; j < 2; ++j)
-    if (t.angle_slope[j] == 0) to.a[joint_dof[j]] = 0;
+    if (t.angle_slope[j] == 0) to.a[joint_dof[j]] = to.a_slope[joint_dof[j]] = 0;
   to.s = t.s;
   to.internal = t.internal;
   // The reaction of an imposed motion from the balance at the end of the step itself, where the acceleration

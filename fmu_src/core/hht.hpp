@@ -44,11 +44,17 @@ struct StepFailure {
   int iterations = 0;
 };
 
+// Whether a step of h after one of h_last tells the slope of the acceleration.
+inline bool slope_known(double h, double h_last) { return h >= 0.25 * h_last; }
+
 class Hht {
  public:
   explicit Hht(const Mechanics& mechanics) : m_(mechanics) {}
 
-  // From `from` under the boundary `b0` to `to` under `b1`; `to` keeps from's statistics plus this attempt's.
+  // Moves HHT's acceleration to where a step of h s expects it; linear, so that it serves variations as well.
+  void prepare(double h, double h_last, MechanicalState& s) const;
+
+  // From `from`, prepared, under the boundary `b0` to `to` under `b1`; `to` keeps from's statistics plus this attempt's.
   // False, with `failure` filled and `to` without meaning, when Newton does not converge.
   bool step(const MechanicalState& from, const Boundary& b0, const Boundary& b1, double h, MechanicalState& to,
             StepFailure& failure) const;

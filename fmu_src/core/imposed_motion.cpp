@@ -2,16 +2,20 @@
 
 namespace zspring {
 
-ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, double H, double hht_alpha)
-    : start_(start), input_(input), H_(H) {
-  end_.position = input.has_rate || input.has_curvature ? input.at(H) : input.value;
+ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, double length, double hht_alpha)
+    : start_(start), input_(input), length_(length) {
+  const double H = length;
   if (input.has_curvature) {
-    end_.velocity = input.rate + input.curvature * H + (input.value - start.position) / H;
-    end_.acceleration = end_.acceleration_hht = input.curvature;
+    gap_ = start.position - input.value;
+    if (start.curvature_length > 0) jerk_ = (input.curvature - start.curvature) / start.curvature_length;
+    Boundary b;
+    at(H, b);
+    end_ = {b.position, b.velocity, b.acceleration, b.acceleration + hht_alpha * H * jerk_, input.curvature, H};
     return;
   }
   const double beta = 0.25 * (1 - hht_alpha) * (1 - hht_alpha);
   const double gamma = 0.5 - hht_alpha;
+  end_.position = input.has_rate ? input.at(H) : input.value;
   end_.acceleration_hht = (end_.position - start.position - H * start.velocity) / (beta * H * H) -
                           (0.5 - beta) / beta * start.acceleration_hht;
   end_.velocity = start.velocity + H * ((1 - gamma) * start.acceleration_hht + gamma * end_.acceleration_hht);
@@ -20,12 +24,11 @@ ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, doub
 }
 
 void ImposedMotion::at(double tau, Boundary& b) const {
-  const double x = tau / H_;
+  const double x = tau / length_;
   if (input_.has_curvature) {
-    const double gap = start_.position - input_.value;
-    b.position = input_.at(tau) + (1 - x) * gap;
-    b.velocity = input_.rate + input_.curvature * tau - gap / H_;
-    b.acceleration = input_.curvature;
+    b.position = input_.at(tau) + tau * tau * tau / 6 * jerk_ + (1 - x) * gap_;
+    b.velocity = input_.rate + tau * (input_.curvature + 0.5 * tau * jerk_) - gap_ / length_;
+    b.acceleration = input_.curvature + tau * jerk_;
   } else {
     b.position = start_.position + x * (end_.position - start_.position);
     b.velocity = start_.velocity + x * (end_.velocity - start_.velocity);

@@ -71,8 +71,10 @@ MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, con
     d.v[i] -= c.gamma_h * t.acceleration_slope[j] * x[i];
     d.q[i] -= t.angle_slope[j] * x[i];
     d.s[j] = -t.moment_slope[j] * x[i];
-    if (t.angle_slope[j] == 0) d.a[i] = 0;
   }
+  d.a_slope = slope_known(h, from.h) ? Vector5((d.a - dfrom.a) / h) : dfrom.a_slope;
+  for (int j = 0; j < 2; ++j)
+    if (t.angle_slope[j] == 0) d.a[joint_dof[j]] = d.a_slope[joint_dof[j]] = 0;
   d.internal = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v);
   for (int j = 0; j < 2; ++j) d.internal[joint_dof[j]] += m.moment_bound[j] * d.s[j];
   d.contact_force = imposed ? db1.uplift[0] - m.mass[U1] * db1.acceleration - d.internal[U1]

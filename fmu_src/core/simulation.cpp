@@ -47,9 +47,15 @@ MechanicalState Simulation::at_rest(const Inputs& inputs) const {
   return s;
 }
 
-// A force that jumps at a communication point takes HHT's memory of the acceleration with it; else the first
-// step would still feel the old force, an error of first order.
+// What jumps at a communication point. A force takes HHT's memory of the acceleration with it; else the first step
+// would still feel the old force, an error of first order. An imposed velocity costs the work of an impulse.
 void Simulation::meet(const Boundary& b0, MechanicalState& s) const {
+  if (hht_.head_imposed()) s.work += 0.5 * mechanics_.mass[U1] * (b0.velocity * b0.velocity - s.v[U1] * s.v[U1]);
+  meet_variation(b0, s);
+}
+
+// The linear part of it, of values or of their variations.
+void Simulation::meet_variation(const Boundary& b0, MechanicalState& s) const {
   const Vector5& mass = mechanics_.mass;
   for (int k = 0; k < 3; ++k)
     if (mass[mass_dof[k]] > 0) s.a[mass_dof[k]] += (b0.uplift[k] - s.boundary.uplift[k]) / mass[mass_dof[k]];
@@ -57,6 +63,7 @@ void Simulation::meet(const Boundary& b0, MechanicalState& s) const {
     s.a[U1] -= (b0.contact_force - s.contact_force) / mass[U1];
     s.contact_force = b0.contact_force;
   }
+  if (hht_.head_imposed()) s.v[U1] = b0.velocity;
   s.boundary = b0;
 }
 
@@ -64,11 +71,14 @@ template <class BoundaryAt, class OnStep>
 bool Simulation::cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin,
                        double h, int halvings, OnStep& on_step, AdvanceFailure& failure) const {
   MechanicalState next;
+  const double h_last = s.h;
+  hht_.prepare(h, h_last, s);
   if (hht_.step(s, b0, b1, h, next, failure.step)) {
     on_step(s, next, b0, b1, h);
     s = next;
     return true;
   }
+  hht_.prepare(h_last, h, s);
   s.statistics = next.statistics;
   failure.time = begin;
   if (halvings == most_halvings) return false;
@@ -100,16 +110,19 @@ bool Simulation::run(SimulationState& state, const Held& held, OnStep&& on_step,
       forces(tau, b);
       bench.motion(tau - done, b);
     };
-    boundary(0, b0);
+    forces(0, b0);
+    Phasor begin = bench.motion(0, b0);
     meet(b0, s);
     while (left > rounding) {
       const bool reaches_node = left >= bench.to_next_node() - rounding;
       const double h = reaches_node ? bench.to_next_node() : left;
-      boundary(done + h, b1);
+      forces(done + h, b1);
+      const Phasor end = bench.motion(h, b1);
       const double force = s.contact_force - p.static_force;
       if (!cover(s, boundary, b0, b1, done, h, 0, on_step, failure)) return false;
-      bench.advance(h, reaches_node, force, s.contact_force - p.static_force);
+      bench.advance(h, reaches_node, begin, force, end, s.contact_force - p.static_force);
       b0 = b1;
+      begin = end;
       done += h;
       left -= h;
     }
@@ -201,11 +214,17 @@ Outputs Simulation::outputs_change(const Inputs& direction) const {
   };
   MechanicalState d;
   Boundary db0 = boundary_change(0);
-  meet(db0, d);
+  meet_variation(db0, d);
+  if (p.drive == Drive::Displacement) {
+    Boundary b0;
+    ImposedMotion(before_.motion, held_.inputs.head_displacement, held_.length, p.solver.hht_alpha).at(0, b0);
+    d.work = mechanics_.mass[U1] * b0.velocity * db0.velocity;
+  }
   double tau = 0;
   const auto linearized = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0, const Boundary& b1,
                               double h) {
     tau += h;
+    hht_.prepare(h, from.h, d);
     const Boundary db1 = boundary_change(tau);
     d = linearized_step(hht_, from, b0, b1, h, to, d, db0, db1);
     db0 = db1;

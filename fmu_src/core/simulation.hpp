@@ -62,6 +62,7 @@ class Simulation {
   bool cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin, double h,
              int halvings, OnStep& on_step, AdvanceFailure& failure) const;
   void meet(const Boundary& b0, MechanicalState& s) const;
+  void meet_variation(const Boundary& db0, MechanicalState& d) const;
 
   Mechanics mechanics_;
   Hht hht_;

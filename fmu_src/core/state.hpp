@@ -21,11 +21,14 @@ struct Statistics {
   double refinements = 0;     // halvings
 };
 
-// HHT's `a` belongs to t + hht_alpha h, not to t: it is the integrator's memory, not an output.
+// HHT's `a` belongs to t + hht_alpha h, not to t: it is the integrator's memory, not an output. Its slope moves it
+// to where the next step expects it when h changes; without that, steps of varying size are of first order.
 struct MechanicalState {
   Vector5 q = Vector5::Zero();
   Vector5 v = Vector5::Zero();
   Vector5 a = Vector5::Zero();
+  Vector5 a_slope = Vector5::Zero();
+  double h = 0;                        // s, of the last step; 0 before the first
   Vector5 internal = Vector5::Zero();  // C v + Fe(q) + Ff(v) - P
   Vector2 s = Vector2::Zero();         // friction moment / moment_bound
   double contact_force = 0;            // N, the force that acts, in every drive
@@ -43,7 +46,7 @@ void visit(Boundary& b, Visitor&& f) {
 
 template <class Visitor>
 void visit(MechanicalState& s, Visitor&& f) {
-  f(s.q), f(s.v), f(s.a), f(s.internal), f(s.s), f(s.contact_force), f(s.dissipated), f(s.work), f(s.loss_power);
+  f(s.q), f(s.v), f(s.a), f(s.a_slope), f(s.h), f(s.internal), f(s.s), f(s.contact_force), f(s.dissipated), f(s.work), f(s.loss_power);
   visit(s.boundary, f);
   f(s.statistics.iterations), f(s.statistics.iterations_max), f(s.statistics.steps), f(s.statistics.refinements);
 }

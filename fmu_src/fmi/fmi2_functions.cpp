@@ -22,6 +22,24 @@ constexpr unsigned after_step = StepComplete | StepFailed | Terminated | Error;
 
 using State = std::vector<double>;
 
+const char* phase_name(Phase phase) {
+  switch (phase) {
+    case Instantiated:
+      return "before fmi2EnterInitializationMode";
+    case Initialization:
+      return "in Initialization Mode";
+    case StepComplete:
+      return "between steps";
+    case StepFailed:
+      return "after a discarded step";
+    case Terminated:
+      return "after fmi2Terminate";
+    case Error:
+      break;
+  }
+  return "after an internal error";
+}
+
 template <class Action>
 fmi2Status guarded(fmi2Component component, unsigned allowed, const char* function, Action&& action) {
   auto* instance = static_cast<Instance*>(component);
@@ -32,7 +50,11 @@ fmi2Status guarded(fmi2Component component, unsigned allowed, const char* functi
     instance->log.write(fmi2Error, Category::logStatusError, text);
     return fmi2Error;
   };
-  if (!(instance->phase & allowed)) return fail("not allowed in this phase of the simulation");
+  if (!(instance->phase & allowed)) {
+    char reason[120];
+    std::snprintf(reason, sizeof reason, "not allowed %s", phase_name(instance->phase));
+    return fail(reason);
+  }
   try {
     return action(*instance);
   } catch (const Refusal& e) {
@@ -112,13 +134,14 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   try {
     const bool named = name && *name;
     auto instance = std::make_unique<Instance>(*functions, named ? name : "(unnamed)", debug != fmi2False);
-    const char* wrong = nullptr;
+    std::string wrong;
     if (!named) wrong = "instanceName: must not be empty";
     if (type != fmi2CoSimulation) wrong = "fmuType: this FMU is for co-simulation only";
     if (!guid || std::strcmp(guid, ZSPRING_GUID) != 0)
-      wrong = "fmuGUID: is not that of this library, " ZSPRING_GUID "; take modelDescription.xml and library from the same FMU";
-    if (!wrong) return instance.release();
-    instance->log.write(fmi2Error, Category::logStatusError, wrong);
+      wrong = std::string("fmuGUID = ") + (guid ? guid : "NULL") +
+              ": must be " ZSPRING_GUID "; modelDescription.xml and library are not from the same FMU";
+    if (wrong.empty()) return instance.release();
+    instance->log.write(fmi2Error, Category::logStatusError, wrong.c_str());
   } catch (...) {
   }
   return nullptr;

@@ -188,9 +188,10 @@ fmi2Status Instance::step(double from, double length) {
   if (!s.advance(held, failure)) {
     phase = StepFailed;
     std::snprintf(text, sizeof text,
-                  "t = %.10g s: no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g after %d "
-                  "iterations. The state is that of %.10g s",
-                  from + failure.time, dof_name[failure.step.dof], failure.step.residual, failure.step.iterations, time_);
+                  "t = %.10g s: no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
+                  "iterations: %d. The state is that of %.10g s",
+                  from + failure.time, dof_name[failure.step.dof], failure.step.residual,
+                  failure.step.dof == ALPHA || failure.step.dof == BETA ? "N.m" : "N", failure.step.iterations, time_);
     log.write(fmi2Discard, Category::logStatusDiscard, text);
     return fmi2Discard;
   }

@@ -45,7 +45,7 @@ const char* Log::enable(bool on, size_t n, const fmi2String names[]) {
     if (!found) return name ? name : "(null)";
     chosen |= found & bit(Category::logAll) ? all : found;
   }
-  mask_ = on ? (n == 0 ? all : mask_ | chosen) : mask_ & ~chosen;
+  mask_ = (on ? chosen : mask_ & ~chosen) | always;
   return nullptr;
 }
 

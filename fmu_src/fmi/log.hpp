@@ -21,7 +21,8 @@ class Log {
   void write(fmi2Status status, Category category, const char* text) const;
   bool enabled(Category c) const { return mask_ >> static_cast<int>(c) & 1; }
 
-  // All categories when none is named. Returns the first name that is not declared, or null.
+  // On: just the named categories, all when none is named; off: not those. Why a call was refused or discarded is
+  // always told. Returns the first name that is not declared, or null.
   const char* enable(bool on, size_t n, const fmi2String names[]);
 
  private:
