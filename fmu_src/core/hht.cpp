@@ -143,6 +143,17 @@ bool Hht::solve(const HhtCoefficients& c, const Trial& t, Vector5& r) const {
   return true;
 }
 
+double Hht::reaction(const Boundary& b, const Vector5& internal) const {
+  return b.uplift[0] - m_.mass[U1] * (b.acceleration + b.acceleration_change) - internal[U1];
+}
+
+Vector5 Hht::push(const Boundary& b, double contact_force) const {
+  Vector5 f;
+  f << b.uplift[0] - contact_force, 0, 0, b.uplift[1], b.uplift[2];
+  if (head_imposed()) f[U1] -= m_.mass[U1] * b.acceleration_change;
+  return f;
+}
+
 Vector5 Hht::old_load(const MechanicalState& from, const Boundary& b0) const {
   Vector5 R = from.internal;
   for (int k = 0; k < 3; ++k) R[mass_dof[k]] -= b0.uplift[k];
@@ -225,19 +236,14 @@ void Hht::accept(const HhtCoefficients& c, const MechanicalState& from, const Bo
     if (t.angle_slope[j] == 0) to.a[joint_dof[j]] = to.a_slope[joint_dof[j]] = 0;
   to.s = t.s;
   to.internal = t.internal;
-  // The reaction of an imposed motion from the balance at the end of the step itself, where the acceleration
-  // is known to second order; HHT's weighted balance would give the force of an earlier instant.
-  to.contact_force =
-      head_imposed() ? b1.uplift[0] - m_.mass[U1] * b1.acceleration - t.internal[U1] : t.contact_force;
+  to.contact_force = head_imposed() ? reaction(b1, t.internal) : t.contact_force;
   to.boundary = b1;
 
   to.loss_power = m_.damping_power(t.v);
   for (int j = 0; j < 2; ++j) to.loss_power += m_.moment_bound[j] * t.s[j] * t.v[joint_dof[j]];
   to.dissipated = from.dissipated + 0.5 * c.h * (from.loss_power + to.loss_power);
-  Vector5 push = m_.preload;
-  push[U1] -= 0.5 * (from.contact_force + to.contact_force);
-  for (int k = 0; k < 3; ++k) push[mass_dof[k]] += 0.5 * (b0.uplift[k] + b1.uplift[k]);
-  to.work = from.work + push.dot(to.q - from.q);
+  const Vector5 mean_push = m_.preload + 0.5 * (push(b0, from.contact_force) + push(b1, to.contact_force));
+  to.work = from.work + mean_push.dot(to.q - from.q);
   to.statistics.steps += 1;
 }
 

@@ -62,6 +62,11 @@ class Hht {
   // The parts that the linearised step shares. `direct`: the unknown of a joint is its acceleration, not z.
   bool head_imposed() const { return m_.parameters.drive == Drive::Displacement || m_.parameters.drive == Drive::Bench; }
   double head_force(const Boundary& b, double u, double v, bool& closed) const;  // N, Force and Wire
+  // N, of an imposed motion, from the balance at this instant itself, where the acceleration is known to second
+  // order; HHT's weighted balance would give the force of an earlier instant. Linear.
+  double reaction(const Boundary& b, const Vector5& internal) const;
+  // What does work on the pantograph at one instant, N, on all degrees of freedom. Without the preload, so that it is linear.
+  Vector5 push(const Boundary& b, double contact_force) const;
   bool evaluate(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b1, bool direct, Trial& t) const;
   bool solve(const HhtCoefficients& c, const Trial& t, Vector5& residual) const;  // residual -> J^-1 residual
   const Mechanics& mechanics() const { return m_; }

@@ -7,10 +7,12 @@ ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, doub
   const double H = length;
   if (input.has_curvature) {
     gap_ = start.position - input.value;
-    if (start.curvature_length > 0) jerk_ = (input.curvature - start.curvature) / start.curvature_length;
+    // A slope seen over a short step tells nothing of a much longer one.
+    if (start.curvature_length > 0.5 * H) jerk_ = (input.curvature - start.curvature) / start.curvature_length;
     Boundary b;
     at(H, b);
-    end_ = {b.position, b.velocity, b.acceleration, b.acceleration + hht_alpha * H * jerk_, input.curvature, H};
+    const double acceleration = b.acceleration + b.acceleration_change;
+    end_ = {b.position, b.velocity, acceleration, acceleration + hht_alpha * H * jerk_, input.curvature, H};
     return;
   }
   const double beta = 0.25 * (1 - hht_alpha) * (1 - hht_alpha);
@@ -26,9 +28,10 @@ ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, doub
 void ImposedMotion::at(double tau, Boundary& b) const {
   const double x = tau / length_;
   if (input_.has_curvature) {
-    b.position = input_.at(tau) + tau * tau * tau / 6 * jerk_ + (1 - x) * gap_;
-    b.velocity = input_.rate + tau * (input_.curvature + 0.5 * tau * jerk_) - gap_ / length_;
-    b.acceleration = input_.curvature + tau * jerk_;
+    b.position = input_.at(tau) + (1 - x) * gap_;
+    b.velocity = input_.rate + tau * input_.curvature - gap_ / length_;
+    b.acceleration = input_.curvature;
+    b.acceleration_change = tau * jerk_;
   } else {
     b.position = start_.position + x * (end_.position - start_.position);
     b.velocity = start_.velocity + x * (end_.velocity - start_.velocity);

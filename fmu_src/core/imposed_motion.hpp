@@ -6,8 +6,9 @@
 // sampled data of any kind.
 //
 // With derivatives the position follows value + rate tau + curvature tau^2/2; what separates its begin from where
-// the position was is closed in a straight line. The curvature goes on with the slope it had since the
-// communication point before: held, it would give the inertia force of the begin of the step at its end.
+// the position was is closed in a straight line. For the reported acceleration and reaction the curvature goes on
+// with the slope it had since the communication point before: held, it would give the inertia force of the begin
+// of the step at its end.
 #pragma once
 
 #include "parameters.hpp"

@@ -77,22 +77,17 @@ MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, con
     if (t.angle_slope[j] == 0) d.a[joint_dof[j]] = d.a_slope[joint_dof[j]] = 0;
   d.internal = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v);
   for (int j = 0; j < 2; ++j) d.internal[joint_dof[j]] += m.moment_bound[j] * d.s[j];
-  d.contact_force = imposed ? db1.uplift[0] - m.mass[U1] * db1.acceleration - d.internal[U1]
-                            : head_force_change(p, t.closed, db1, d.q[U1], d.v[U1]);
+  d.contact_force =
+      imposed ? hht.reaction(db1, d.internal) : head_force_change(p, t.closed, db1, d.q[U1], d.v[U1]);
   d.boundary = db1;
 
   d.loss_power = 2 * to.v.dot(m.damping_force(d.v));
   for (int j = 0; j < 2; ++j)
     d.loss_power += m.moment_bound[j] * (d.s[j] * to.v[joint_dof[j]] + to.s[j] * d.v[joint_dof[j]]);
   d.dissipated = dfrom.dissipated + 0.5 * h * (dfrom.loss_power + d.loss_power);
-  Vector5 push = m.preload, dpush = Vector5::Zero();
-  push[U1] -= 0.5 * (from.contact_force + to.contact_force);
-  dpush[U1] -= 0.5 * (dfrom.contact_force + d.contact_force);
-  for (int k = 0; k < 3; ++k) {
-    push[mass_dof[k]] += 0.5 * (b0.uplift[k] + b1.uplift[k]);
-    dpush[mass_dof[k]] += 0.5 * (db0.uplift[k] + db1.uplift[k]);
-  }
-  d.work = dfrom.work + push.dot(d.q - dfrom.q) + dpush.dot(to.q - from.q);
+  const Vector5 mean_push = m.preload + 0.5 * (hht.push(b0, from.contact_force) + hht.push(b1, to.contact_force));
+  const Vector5 d_push = 0.5 * (hht.push(db0, dfrom.contact_force) + hht.push(db1, d.contact_force));
+  d.work = dfrom.work + mean_push.dot(d.q - dfrom.q) + d_push.dot(to.q - from.q);
   return d;
 }
 

@@ -12,7 +12,8 @@ Vector5 unbalanced_force(const MechanicalState& s) {
 }
 
 double head_acceleration(const Hht& hht, const MechanicalState& s) {
-  return hht.head_imposed() ? s.boundary.acceleration : unbalanced_force(s)[U1] / hht.mechanics().mass[U1];
+  if (hht.head_imposed()) return s.boundary.acceleration + s.boundary.acceleration_change;
+  return unbalanced_force(s)[U1] / hht.mechanics().mass[U1];
 }
 
 }  // namespace
@@ -21,7 +22,7 @@ Vector5 acceleration(const Hht& hht, const MechanicalState& s) {
   const Vector5& mass = hht.mechanics().mass;
   Vector5 a = unbalanced_force(s);
   for (int i = 0; i < 5; ++i) a[i] = mass[i] > 0 ? a[i] / mass[i] : s.a[i];
-  if (hht.head_imposed()) a[U1] = s.boundary.acceleration;
+  a[U1] = head_acceleration(hht, s);
   return a;
 }
 

@@ -42,7 +42,8 @@ MechanicalState Simulation::at_rest(const Inputs& inputs) const {
   mechanics_.springs(s.q, s.internal, tangent);
   s.boundary = initial_boundary(inputs);
   bool closed;
-  s.contact_force = hht_.head_imposed() ? s.boundary.uplift[0] - s.internal[U1] : hht_.head_force(s.boundary, 0, 0, closed);
+  s.contact_force =
+      hht_.head_imposed() ? hht_.reaction(s.boundary, s.internal) : hht_.head_force(s.boundary, 0, 0, closed);
   s.a = acceleration(hht_, s);
   return s;
 }
@@ -63,7 +64,10 @@ void Simulation::meet_variation(const Boundary& b0, MechanicalState& s) const {
     s.a[U1] -= (b0.contact_force - s.contact_force) / mass[U1];
     s.contact_force = b0.contact_force;
   }
-  if (hht_.head_imposed()) s.v[U1] = b0.velocity;
+  if (hht_.head_imposed()) {
+    s.v[U1] = b0.velocity;
+    s.contact_force = hht_.reaction(b0, s.internal);
+  }
   s.boundary = b0;
 }
 
@@ -172,16 +176,14 @@ Outputs Simulation::output_rates() const {
       d.contact_force = (to.contact_force - from.contact_force) / h;
       d.boundary.uplift = (b1.uplift - b0.uplift) / h;
       d.boundary.acceleration = (b1.acceleration - b0.acceleration) / h;
+      d.boundary.acceleration_change = (b1.acceleration_change - b0.acceleration_change) / h;
     };
     run(again, held_, quotient, failure);
   }
   d.q = s.v;
   d.v = acceleration(hht_, s);
   d.dissipated = s.loss_power;
-  Vector5 push = mechanics_.preload;
-  push[U1] -= s.contact_force;
-  for (int k = 0; k < 3; ++k) push[mass_dof[k]] += s.boundary.uplift[k];
-  d.work = push.dot(s.v);
+  d.work = s.v.dot(mechanics_.preload + hht_.push(s.boundary, s.contact_force));
   return zspring::outputs_change(hht_, s, d);
 }
 

@@ -1,0 +1,1 @@
+"""Runs the ZSpringPantograph FMU: frequency response figure, simulation, list of variables."""

@@ -1,0 +1,58 @@
+"""The bench inside the FMU: drive Bench imposes a sine on the head and analyses the response."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from typing import Any
+
+from .fmu import Instance
+from .variables import Value
+
+
+class FmuBench:
+    """Response-controlled bench of the FMU itself: one communication step covers any number of periods.
+
+    After `run`: `H` = -Z/F in m/N over the last whole period, `change` of H against the period before
+    (relative), `periods` = whole periods since the bench was tuned.
+    """
+
+    def __init__(self, instance: Instance, parameters: Mapping[str, Value]):
+        self.instance = instance
+        self._parameters = {**parameters, **instance.variables.parse_assignments(["drive=Bench"])}
+        self._time = 0.0
+        self._frequency = 0.0
+        self.H, self.change, self.periods = 0j, 1.0, 0
+
+    def start(self, frequency: float, acceleration: float) -> None:
+        """From the static state at rest; frequency in Hz, peak acceleration in m/s2."""
+        self._time, self._frequency = 0.0, frequency
+        self.instance.start({**self._parameters, **_settings(frequency, acceleration)})
+
+    def tune(self, frequency: float, acceleration: float) -> None:
+        """Go over to another frequency (Hz) and peak acceleration (m/s2) without stopping."""
+        self._frequency = frequency
+        self.instance.set(_settings(frequency, acceleration))
+
+    def run(self, periods: int) -> None:
+        """Run on for whole periods; after `start` and `tune` they begin with the ramp."""
+        duration = periods / self._frequency
+        self.instance.step(self._time, duration)
+        self._time += duration
+        real, imaginary, self.change, self.periods = self.instance.get(
+            ["bench.H_re", "bench.H_im", "bench.change", "bench.periods"])
+        self.H = complex(real, imaginary)
+
+    def save(self) -> dict[str, Any]:
+        """The state after `run`, fit for JSON."""
+        return {"time": self._time, "fmu": base64.b64encode(self.instance.save()).decode()}
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Back to a saved state; what follows is the same to the last bit."""
+        self.instance.start(self._parameters)
+        self.instance.load(base64.b64decode(state["fmu"]))
+        self._time = state["time"]
+
+
+def _settings(frequency: float, acceleration: float) -> dict[str, Value]:
+    return {"bench.frequency": frequency, "bench.acceleration": acceleration}

@@ -1,0 +1,17 @@
+"""The one exception for everything a user can put right, and help with mistyped names."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class ZSpringError(Exception):
+    """One line that says what is wrong, its value, and what is allowed."""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """"; did you mean a or b?" for the closest known names, or an empty string."""
+    by_lower = {other.lower(): other for other in known}
+    close = difflib.get_close_matches(name.lower(), by_lower, n=2, cutoff=0.6)
+    return f"; did you mean {' or '.join(by_lower[other] for other in close)}?" if close else ""

@@ -1,0 +1,113 @@
+"""What is said about an FRF: head of its file, table of resonances, solver statistics, error estimate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import datetime, timezone
+
+import numpy as np
+
+from .fmu import Fmu
+from .frf import BENCH_PARAMETERS, FAILED, NOT_SETTLED, FrfPoint, FrfSettings
+from .receptance import receptance
+from .resonances import extremes
+from .variables import Value, text, with_unit
+
+Curve = tuple[np.ndarray, np.ndarray]  # frequency (n,) in Hz, receptance (n,) in m/N
+
+
+def file_head(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], quantity: str) -> dict[str, str]:
+    """Everything that defines the numbers of an FRF file, and the date (UTC).
+
+    `parameters` are all parameters of the FMU, calculated ones included.
+    """
+    description = fmu.description
+    head = {
+        "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "FMU": f"{description.modelName} {description.version}",
+        "GUID": description.guid,
+        "SHA-256 of the FMU": fmu.sha256,
+        "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
+        "quantity": "receptance H" if quantity == "receptance" else "dynamic stiffness 1/H",
+        "through": settings.through,
+        "direction": settings.direction,
+        "amplitudes": _numbers(settings.amplitudes) + " m/s2",
+        "frequencies": _numbers(settings.frequencies) + " Hz",
+        "tolerance": f"{settings.tolerance!r}",
+        "periods": f"{settings.min_periods} to {settings.max_periods}",
+        "stroke": f"{settings.stroke!r} m",
+        "synthetic": " ".join(fmu.variables.synthetic(parameters)),
+    }
+    for name, value in parameters.items():
+        if name not in BENCH_PARAMETERS:
+            variable = fmu.variables[name]
+            head[name] = with_unit(variable, value)
+    return head
+
+
+def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value]) -> str:
+    """Title of the figure: what was measured and whether any number of the Z-spring is synthetic."""
+    suspension, friction = (text(fmu.variables[name], parameters[name]) for name in ("suspension", "friction"))
+    model = f"Z-spring, friction {friction}" if suspension == "ZSpring" else f"suspension {suspension}"
+    course = "each point from rest" if settings.direction == "rest" else f"sweep {settings.direction}"
+    synthetic = suspension != "Linear" and fmu.variables.synthetic(parameters)
+    return (f"Pantograph head, first-order FRF\n{model}, {course}"
+            + ("; Z-spring parameters synthetic" if synthetic else ""))
+
+
+def linear_bounds(settings: FrfSettings, parameters: Mapping[str, Value], linear: bool) -> dict[str, Curve]:
+    """Receptances of the linear models over the figure's range: "locked" and "free", or "linear" alone."""
+    frequency = np.linspace(min(settings.frequencies), max(settings.frequencies), 4001)
+    models = ["linear"] if linear else ["locked", "free"]
+    return {model: (frequency, receptance(frequency, parameters, model)) for model in models}
+
+
+def resonance_table(points: Sequence[FrfPoint], bounds: Mapping[str, Curve]) -> list[str]:
+    """Lines with resonances and antiresonances of the receptance, by amplitude, between the linear bounds."""
+    curves = {f"{model}": curve for model, curve in bounds.items()}
+    measured = {}
+    for amplitude in sorted({point.amplitude for point in points}):
+        curve = sorted((p for p in points if p.amplitude == amplitude), key=lambda p: p.frequency)
+        measured[f"{amplitude:g} m/s2"] = (np.array([p.frequency for p in curve]), np.array([p.H for p in curve]))
+    first, *last = curves.items()
+    rows = [(name, *(_cells(found) for found in extremes(*curve)))
+            for name, curve in [first, *measured.items(), *last]]
+    width = max(len(row[1]) for row in rows)
+    return [f"{'':10s}  {'resonances, Hz (mm/N)':{width}s}  antiresonances, Hz (mm/N)",
+            *(f"{name:>10s}  {maxima:{width}s}  {minima}" for name, maxima, minima in rows)]
+
+
+def solver_line(points: Iterable[FrfPoint]) -> str:
+    """Newton statistics over all points."""
+    points = list(points)
+    steps, iterations = sum(p.steps for p in points), sum(p.iterations for p in points)
+    worst, halvings = max(p.iterations_max for p in points), sum(p.refinements for p in points)
+    return (f"Newton: {iterations / max(steps, 1):.2f} iterations per step, at most {worst}; "
+            f"{steps} steps, {halvings} halvings")
+
+
+def richardson(H: complex, H_half: complex) -> float:
+    """Relative error of |H - exact| estimated for a second-order method from the same at half the step."""
+    return 4 / 3 * abs(H - H_half) / abs(H)
+
+
+def error_line(errors: Mapping[tuple[float, float], float]) -> str:
+    """Median and worst of the estimates by (amplitude, frequency)."""
+    (amplitude, frequency), worst = max(errors.items(), key=lambda item: item[1])
+    return (f"error estimate of H from half the step: {100 * np.median(list(errors.values())):.2g} % median, "
+            f"{100 * worst:.2g} % worst (at {frequency:g} Hz, {amplitude:g} m/s2)")
+
+
+def doubtful_lines(points: Iterable[FrfPoint]) -> list[str]:
+    """One line for each point that did not settle or failed."""
+    return [f"{p.amplitude:g} m/s2, {p.frequency:g} Hz: {p.status}"
+            + (f" after {p.periods} periods (change {p.change:.2g})" if p.status == NOT_SETTLED else "")
+            for p in points if p.status == NOT_SETTLED or p.status.startswith(FAILED)]
+
+
+def _cells(found: Iterable[tuple[float, float]]) -> str:
+    return "   ".join(f"{frequency:6.3f} ({1e3 * magnitude:.4f})" for frequency, magnitude in found)
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(repr(value).removesuffix(".0") for value in values)

@@ -1,0 +1,122 @@
+"""One FRF from settings to result folder: measure with a progress bar, write CSV and figure, print the table."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from tqdm import tqdm
+
+from . import frf_report as report
+from . import plots
+from .errors import ZSpringError
+from .fmu import Fmu
+from .frf import BENCHES, FAILED, FrfPoint, FrfSettings, left_out, measure, sweeps
+from .interrupt import Interrupted, stop_on_interrupt
+from .results import FrfRecord, write_frf
+from .variables import Value, text
+
+MOST_DOUBTFUL_LINES = 10
+
+Points = dict[tuple[float, float], FrfPoint]  # by amplitude in m/s2 and frequency in Hz
+
+
+def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, quantity: str, suffix: str, jobs: int,
+            error_estimate: bool) -> None:
+    """Measure, going on where an interrupted run in the folder stopped, then write and print all results.
+
+    quantity        "receptance" or "stiffness"
+    suffix          of the figure, "png" or "svg"
+    jobs            number of sweeps at a time
+    error_estimate  measure at half the internal step, too
+    Raises ZSpringError when there is no point to measure or points failed, Interrupted after Ctrl-C; finished
+    points are kept.
+    """
+    if not sweeps(settings):
+        raise ZSpringError(f"nothing to measure: all points need more stroke than {settings.stroke:g} m")
+    parameters = all_parameters(fmu, settings)
+    head = report.file_head(fmu, settings, parameters, quantity)
+    record = FrfRecord(folder / "frf.partial.csv", head, quantity)
+    points, speed = _measure(fmu, settings, record, jobs)
+    records, errors = [record], None
+    if error_estimate:
+        finer = replace(settings, parameters={**settings.parameters, "solver.step": parameters["solver.step"] / 2})
+        finer_head = report.file_head(fmu, finer, all_parameters(fmu, finer), quantity)
+        records.append(FrfRecord(folder / "frf.half-step.partial.csv", finer_head, quantity))
+        finer_points, _ = _measure(fmu, finer, records[-1], jobs)
+        estimates = {key: report.richardson(point.H, finer_points[key].H) for key, point in points.items()}
+        errors = {key: error for key, error in estimates.items() if math.isfinite(error)}
+
+    results = sorted([*points.values(), *left_out(settings)], key=lambda p: (p.amplitude, p.frequency))
+    csv_path, figure_path = folder / "frf.csv", folder / f"frf.{suffix}"
+    write_frf(csv_path, head, results, quantity, errors)
+    suspension = text(fmu.variables["suspension"], parameters["suspension"])
+    bounds = report.linear_bounds(settings, parameters, linear=suspension == "Linear")
+    figure = plots.frf_figure(results, bounds, quantity, settings.stroke, report.title(fmu, settings, parameters))
+    plots.save(figure, figure_path)
+    for record in records:
+        record.path.unlink()
+
+    print(*report.resonance_table(results, bounds), speed, report.solver_line(points.values()), sep="\n")
+    if errors:
+        print(report.error_line(errors))
+    print(f"written: {csv_path} {figure_path}")
+    doubtful = report.doubtful_lines(results)
+    for line in doubtful[:MOST_DOUBTFUL_LINES]:
+        print(line, file=sys.stderr)
+    if len(doubtful) > MOST_DOUBTFUL_LINES:
+        print(f"and {len(doubtful) - MOST_DOUBTFUL_LINES} more, see {csv_path}", file=sys.stderr)
+    failed = sum(point.status.startswith(FAILED) for point in results)
+    if failed:
+        raise ZSpringError(f"{failed} of {len(points)} points could not be solved; the others are written")
+
+
+def all_parameters(fmu: Fmu, settings: FrfSettings) -> dict[str, Value]:
+    """All parameters that the FMU runs with, calculated ones included. Raises FmuError if it refuses one."""
+    names = fmu.variables.names("parameter", "calculatedParameter")
+    with fmu.instances() as (instance,):
+        BENCHES[settings.through](instance, settings.parameters).start(
+            settings.frequencies[0], settings.amplitudes[0])
+        return dict(zip(names, instance.get(names)))
+
+
+def default_folder(fmu: Fmu, settings: FrfSettings) -> Path:
+    """results/frf-<friction>-<direction>, with a hash of the settings if others differ from the standard ones."""
+    friction = fmu.variables["friction"]
+    value = settings.parameters.get("friction", int(friction.start))
+    name = f"frf-{text(friction, value).lower()}-{settings.direction}"
+    standard = replace(FrfSettings(), direction=settings.direction, parameters={"friction": value})
+    used = replace(settings, parameters={"friction": value, **settings.parameters})
+    if used != standard:
+        name += "-" + hashlib.sha256(repr(used).encode()).hexdigest()[:8]
+    return Path("results") / name
+
+
+def _measure(fmu: Fmu, settings: FrfSettings, record: FrfRecord, jobs: int) -> tuple[Points, str]:
+    """All points of the settings and a line on the time it took."""
+    planned = sweeps(settings)
+    todo = record.remaining(planned)
+    total, missing = (sum(len(sweep.frequencies) for sweep in some) for some in (planned, todo))
+    if record.is_stale:
+        print(f"{record.path} is of other settings: begun anew")
+    elif missing < total:
+        print(f"going on after {total - missing} of {total} points in {record.path}")
+    begin = time.perf_counter()
+    with (stop_on_interrupt() as stop, record,
+          tqdm(total=total, initial=total - missing, unit=" points", disable=None) as bar):
+        for point, state in measure(fmu, settings, todo, jobs, stop):
+            record.append(point, state)
+            bar.update()
+    seconds = time.perf_counter() - begin
+    if stop.is_set():
+        raise Interrupted(f"interrupted after {len(record.points)} of {total} points, kept in {record.path}; "
+                          "the same command goes on from there")
+    keys = [(sweep.amplitude, frequency) for sweep in planned for frequency in sweep.frequencies]
+    return ({key: record.points[key] for key in keys},
+            f"{missing} points in {seconds:.2f} s, {missing / max(seconds, 1e-9):.0f} points/s; "
+            f"{len(left_out(settings))} left out: stroke > {1e3 * settings.stroke:g} mm")
+

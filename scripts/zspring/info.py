@@ -1,0 +1,42 @@
+"""A table of the FMU's variables as text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+
+from fmpy.model_description import ScalarVariable
+
+from .errors import ZSpringError, did_you_mean
+from .variables import Variables, text, parse
+
+
+def variable_table(variables: Variables, names: Sequence[str] = ()) -> list[str]:
+    """Aligned lines: name, causality, unit, start, bounds, description.
+
+    names   of variables, * and ? allowed; none: all. Raises ZSpringError for one that fits no variable.
+    """
+    wanted = list(variables)
+    if names:
+        known = [variable.name for variable in variables]
+        for name in names:
+            if not any(fnmatchcase(other, name) for other in known):
+                raise ZSpringError(f"no variable {name!r} in the FMU{did_you_mean(name, known)}")
+        wanted = [variable for variable in variables if any(fnmatchcase(variable.name, name) for name in names)]
+    rows = [["name", "causality", "unit", "start", "allowed", "description"], *map(_row, wanted)]
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
+
+
+def _row(variable: ScalarVariable) -> list[str]:
+    causality = f"{'tunable ' if variable.variability == 'tunable' else ''}{variable.causality}"
+    start = "" if variable.start is None else text(variable, parse(variable, variable.start))
+    return [variable.name, causality, variable.unit or "", start, _bounds(variable), variable.description or ""]
+
+
+def _bounds(variable: ScalarVariable) -> str:
+    if variable.type == "Enumeration":
+        return " | ".join(item.name for item in variable.declaredType.items)
+    if variable.min is None and variable.max is None:
+        return ""
+    return f"{variable.min or '-inf'} .. {variable.max or 'inf'}"

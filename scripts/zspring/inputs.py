@@ -1,0 +1,99 @@
+"""Inputs over time: files with a column "time [s]" and columns named after the FMU's inputs, and interpolation."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+
+from .errors import ZSpringError
+from .variables import Variables
+
+TIME_UNITS = {"s": 1.0, "ms": 1e-3}
+
+
+def read_inputs(path: Path, variables: Variables) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Time (n,) in s and the inputs by name, each (n,) in the FMU's unit, n >= 2.
+
+    A column is named NAME or NAME [UNIT]; the unit may be the FMU's or one of its display units. Lines that
+    begin with # are comments. Raises ZSpringError, with line and column, for an unknown column or unit, a gap,
+    a value that is no finite number, and time that does not increase.
+    """
+    try:
+        with open(path, encoding="utf-8-sig", newline="") as file:
+            numbered = [(number, line) for number, line in enumerate(file, 1) if line.strip() and line[0] != "#"]
+    except UnicodeDecodeError:
+        raise ZSpringError(f"{path}: no text in UTF-8") from None
+    rows = [(number, [cell.strip() for cell in row])
+            for (number, _), row in zip(numbered, csv.reader(line for _, line in numbered))]
+    if len(rows) < 3:
+        raise ZSpringError(f"{path}: needs a line of column names and at least two rows")
+    columns = [_column(path, label, variables) for label in rows[0][1]]
+    names = [name for name, _, _ in columns]
+    for name in names:
+        if names.count(name) > 1:
+            raise ZSpringError(f"{path}: two columns {name}")
+    if "time" not in names:
+        raise ZSpringError(f"{path}: no column 'time [s]'")
+
+    table = np.array([_numbers(path, number, row, names) for number, row in rows[1:]])
+    values = {name: (column - offset) / factor for (name, factor, offset), column in zip(columns, table.T)}
+    time = values.pop("time")
+    late = np.flatnonzero(np.diff(time) <= 0)
+    if late.size:
+        number, (before, after) = rows[late[0] + 2][0], time[late[0]:late[0] + 2]
+        raise ZSpringError(f"{path}, line {number}: time = {after:g} s after {before:g} s: must increase")
+    return time, values
+
+
+def interpolate(time: np.ndarray, values: np.ndarray, points: np.ndarray,
+                kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Values (n + 1,) at the communication points, and first and second derivative (n,) at the begin of each step.
+
+    time, values    (m,) the rows of an input
+    points          (n + 1,) communication points in s, within `time`
+    kind            "linear": straight from one communication point to the next; "cubic": a cubic spline through
+                    the rows, so that velocity and acceleration of a position do not jump
+    """
+    if kind == "cubic":
+        from scipy.interpolate import CubicSpline  # slow to load
+
+        spline = CubicSpline(time, values)
+        return spline(points), spline(points[:-1], 1), spline(points[:-1], 2)
+    at_points = np.interp(points, time, values)
+    slopes = np.diff(at_points) / np.diff(points)
+    return at_points, slopes, np.zeros_like(slopes)
+
+
+def _column(path: Path, label: str, variables: Variables) -> tuple[str, float, float]:
+    """Name, and factor and offset of the unit, of a column "NAME" or "NAME [UNIT]"."""
+    name, unit = re.fullmatch(r"([^\[]*?)\s*(?:\[(.*)\])?", label).groups()
+    try:
+        if name == "time":
+            if unit not in (None, *TIME_UNITS):
+                raise ZSpringError(f"time [{unit}]: the unit must be {' or '.join(TIME_UNITS)}")
+            return "time", 1 / TIME_UNITS[unit or "s"], 0.0
+        known = variables.names("input")
+        if name not in known:
+            raise ZSpringError(f"column {name!r}: must be one of time, {', '.join(known)}")
+        return (name, *variables.factor_and_offset(variables[name], unit or variables[name].unit))
+    except ZSpringError as error:
+        raise ZSpringError(f"{path}: {error}") from None
+
+
+def _numbers(path: Path, line: int, row: list[str], names: list[str]) -> list[float]:
+    if len(row) != len(names):
+        raise ZSpringError(f"{path}, line {line}: {len(row)} values for {len(names)} columns")
+    numbers = []
+    for name, cell in zip(names, row):
+        try:
+            number = float(cell)
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            raise ZSpringError(f"{path}, line {line}: {name} = {cell!r}: must be a finite number")
+        numbers.append(number)
+    return numbers

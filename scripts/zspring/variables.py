@@ -1,0 +1,113 @@
+"""The FMU's variables as its model description gives them: look up by name, read and write values as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from fmpy.model_description import ModelDescription, ScalarVariable
+
+from .errors import ZSpringError, did_you_mean
+
+Value = float | int | bool
+
+
+class Variables:
+    """All variables of one model description, by name, in the order of the description."""
+
+    def __init__(self, description: ModelDescription):
+        self._by_name = {variable.name: variable for variable in description.modelVariables}
+        self._display_units = {
+            unit.name: {display.name: (float(display.factor or 1), float(display.offset or 0))
+                        for display in unit.displayUnits}
+            for unit in description.unitDefinitions
+        }
+
+    def __iter__(self) -> Iterator[ScalarVariable]:
+        return iter(self._by_name.values())
+
+    def __getitem__(self, name: str) -> ScalarVariable:
+        """The variable of that name. Raises ZSpringError with the closest names."""
+        if name not in self._by_name:
+            raise ZSpringError(f"no variable {name!r} in the FMU{did_you_mean(name, self._by_name)}")
+        return self._by_name[name]
+
+    def names(self, *causalities: str) -> list[str]:
+        """Names of the variables with one of these causalities."""
+        return [variable.name for variable in self if variable.causality in causalities]
+
+    def parameter(self, name: str) -> ScalarVariable:
+        """The parameter of that name. Raises ZSpringError if it is none."""
+        known = self.names("parameter")
+        if name not in known:
+            if name in self._by_name:
+                raise ZSpringError(f"{name} is not a parameter but {self._by_name[name].causality}")
+            raise ZSpringError(f"no parameter {name!r} in the FMU{did_you_mean(name, known)}")
+        return self._by_name[name]
+
+    def parse_assignments(self, assignments: Iterable[str], but_not: Sequence[str] = ()) -> dict[str, Value]:
+        """Parameter values from texts NAME=VALUE, VALUE a number or the name of an enumeration's item.
+
+        Bounds are left to the FMU. Raises ZSpringError for an unknown name, one that is in `but_not`, or a
+        value of the wrong type.
+        """
+        values = {}
+        for assignment in assignments:
+            name, equals, text = (part.strip() for part in assignment.partition("="))
+            if not equals:
+                raise ZSpringError(f"{assignment!r}: must be NAME=VALUE, for example zspring.Mf=0.5")
+            values[name] = parse(self.parameter(name), text)
+            if name in but_not:
+                raise ZSpringError(f"{assignment}: refused, {', '.join(but_not)} are set by the measurement itself")
+        return values
+
+    def synthetic(self, values: Mapping[str, Value]) -> list[str]:
+        """Those parameters whose value is the FMU's own and is, by its description, synthetic."""
+        return [name for name, value in values.items()
+                if "(synthetic)" in self[name].description and value == parse(self[name], self[name].start)]
+
+    def factor_and_offset(self, variable: ScalarVariable, unit: str) -> tuple[float, float]:
+        """(factor, offset) with: value in `unit` = factor * value in the FMU's unit + offset.
+
+        Raises ZSpringError if the FMU declares neither this unit nor this display unit for the variable.
+        """
+        known = {variable.unit: (1.0, 0.0), **self._display_units.get(variable.unit, {})}
+        if unit not in known:
+            raise ZSpringError(f"{variable.name} [{unit}]: the unit must be {' or '.join(known)}")
+        return known[unit]
+
+
+def parse(variable: ScalarVariable, text: str) -> Value:
+    """A value of the variable's type. Raises ZSpringError that names the variable, the text and what is allowed."""
+    try:
+        if variable.type == "Real":
+            return float(text)
+        if variable.type == "Integer":
+            return int(text)
+    except ValueError:
+        allowed = "a number" if variable.type == "Real" else "a whole number"
+        raise ZSpringError(f"{variable.name} = {text!r}: must be {allowed}") from None
+    items = _items(variable)
+    for name, value in items.items():
+        if text.lower() in (name.lower(), str(value)):
+            return value
+    raise ZSpringError(f"{variable.name} = {text!r}: must be one of {', '.join(items)}")
+
+
+def text(variable: ScalarVariable, value: Value) -> str:
+    """The value as `parse` reads it back: shortest exact number, or the name of the enumeration's item."""
+    if variable.type in ("Real", "Integer"):
+        return repr(value).removesuffix(".0")
+    return next((name for name, item in _items(variable).items() if item == value), str(value))
+
+
+def with_unit(variable: ScalarVariable, value: Value) -> str:
+    """The value as `text` gives it, and its unit if it has one."""
+    unit = "" if variable.unit in (None, "1") else f" {variable.unit}"
+    return text(variable, value) + unit
+
+
+def _items(variable: ScalarVariable) -> dict[str, int]:
+    """Names and values that a Boolean or an enumeration can take."""
+    if variable.type == "Boolean":
+        return {"false": 0, "true": 1}
+    return {item.name: int(item.value) for item in variable.declaredType.items}

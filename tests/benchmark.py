@@ -1,0 +1,107 @@
+"""What the solver costs and how exact it is, over the standard figure. Run it with scripts/benchmark.
+
+Every point is run from rest through one communication step of 30 periods, a fixed amount of work, unlike
+`zspring frf`, which stops where the response is steady. Times are minima over a few rounds in which the variants
+take turns, so that a busy machine hurts all of them alike; their ratios say more than their values.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import time
+from collections.abc import Iterable
+from itertools import groupby
+
+import click
+import numpy as np
+from core import probe_folder
+from tqdm import tqdm
+from zspring.fmu import Fmu, Instance
+from zspring.frf import FrfSettings, sweeps
+
+PERIODS = 30
+ROUNDS = 5
+COUNTERS = ["solver.steps", "solver.iterations", "solver.iterations_max", "solver.refinements"]
+# (amplitude in m/s2, frequency in Hz)
+POINTS = [(sweep.amplitude, f) for sweep in sweeps(FrfSettings()) for f in sweep.frequencies]
+
+
+def run(instance: Instance, settings: Iterable[str]) -> tuple[np.ndarray, np.ndarray, float]:
+    """H (m/N) and counters of every point, (points,) and (points, 4), and the seconds it took."""
+    fixed = instance.variables.parse_assignments(["drive=Bench", *settings])
+    H, counts = [], []
+    begin = time.perf_counter()
+    for amplitude, frequency in POINTS:
+        instance.start({**fixed, "bench.frequency": frequency, "bench.acceleration": amplitude})
+        instance.step(0, PERIODS / frequency)
+        real, imaginary, *counters = instance.get(["bench.H_re", "bench.H_im", *COUNTERS])
+        H.append(complex(real, imaginary))
+        counts.append(counters)
+    return np.array(H), np.array(counts), time.perf_counter() - begin
+
+
+def core_alone(friction: str) -> float:
+    """Seconds the core needs for the same points without FMI."""
+    number = {"Regularized": "1", "Coulomb": "2"}[friction]
+    points = "".join(f"{frequency} {amplitude}\n" for amplitude, frequency in POINTS)
+    done = subprocess.run([probe_folder() / "core_benchmark", number, str(PERIODS)], input=points, check=True,
+                          capture_output=True, text=True)
+    return float(done.stdout.split()[1])
+
+
+def speed(instance: Instance) -> None:
+    print(f"Speed: {len(POINTS)} points, {PERIODS} periods each, one core, best of {ROUNDS}")
+    print("law          steps     through fmpy   core alone   ratio   a step in fmi2DoStep")
+    times: dict[str, list[tuple[float, float]]] = {"Regularized": [], "Coulomb": []}
+    steps = 0
+    for _ in tqdm(range(ROUNDS), unit=" rounds", leave=False, disable=None):
+        for law, taken in times.items():
+            _, counts, seconds = run(instance, [f"friction={law}"])
+            steps = counts[:, 0].sum()
+            taken.append((seconds, core_alone(law)))
+    for law, taken in times.items():
+        fmpy, core = np.min(taken, axis=0)
+        print(f"{law:<11}  {steps:>8}  {fmpy:>8.2f} s   {core:>8.2f} s   {fmpy / core:>5.2f}   {1e6 * fmpy / steps:>8.2f} us")
+
+
+def newton(instance: Instance) -> None:
+    print("\nNewton: iterations a step (and steps that had to be halved, %) by amplitude in m/s2; the largest number")
+    amplitudes = [amplitude for amplitude, _ in groupby(POINTS, key=lambda point: point[0])]
+    print(f"{'law and tangent':<24}" + "".join(f"{a:>14g}" for a in amplitudes) + f"{'largest':>10}")
+    variants = [("Regularized", "Resolvent"), ("Coulomb", "Resolvent"), ("Regularized", "Mean"),
+                ("Regularized", "Secant"), ("Regularized", "Exact")]
+    for law, tangent in variants:
+        # As the published study: up to 100 iterations.
+        _, counts, _ = run(instance, [f"friction={law}", f"solver.tangent={tangent}", "solver.max_iterations=100"])
+        cells = []
+        for amplitude in amplitudes:
+            steps, iterations, _, refinements = counts[[a == amplitude for a, _ in POINTS]].sum(axis=0)
+            cells.append(f"{iterations / steps:.2f} ({100 * refinements / steps:.2f})")
+        print(f"{law + ' ' + tangent:<24}" + "".join(f"{cell:>14}" for cell in cells) + f"{counts[:, 2].max():>10}")
+
+
+def accuracy(instance: Instance, reference_step: float) -> None:
+    print(f"\nAccuracy of |H|, in %, and of the phase, in rad, against a step of {1e3 * reference_step:g} ms")
+    print("law          step      median     worst   at                    phase, worst")
+    for law in ("Regularized", "Coulomb"):
+        exact, *_ = run(instance, [f"friction={law}", f"solver.step={reference_step}"])
+        for step in (2e-3, 1e-3, 5e-4):
+            H, *_ = run(instance, [f"friction={law}", f"solver.step={step}"])
+            error = 100 * np.abs(np.abs(H / exact) - 1)
+            amplitude, frequency = POINTS[error.argmax()]
+            print(f"{law:<11}  {1e3 * step:g} ms{np.median(error):>11.3f}{error.max():>10.2f}   "
+                  f"{f'{frequency:g} Hz, {amplitude:g} m/s2':<20}  {np.abs(np.angle(H / exact)).max():>8.4f}")
+
+
+@click.command()
+@click.option("--reference-step", default=5e-5, show_default=True, help="s, of the solution taken as exact.")
+def main(reference_step: float) -> None:
+    """Print speed, Newton's work and accuracy over the standard figure."""
+    with Fmu() as fmu, fmu.instances() as (instance,):
+        speed(instance)
+        newton(instance)
+        accuracy(instance, reference_step)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,120 @@
+"""A step that cannot be solved: fmi2Discard, the state as before it, and the last good time."""
+
+from __future__ import annotations
+
+import pytest
+from fmpy.fmi2 import fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated
+
+from harness import Pantograph, refusal
+
+# One iteration of a slope that does not follow the friction law, to a tolerance at the limit of rounding.
+HOPELESS = {
+    "solver.tangent": "Exact",
+    "solver.max_iterations": 1,
+    "solver.tolerance": 1e-13,
+    "drive": "Force",
+}
+
+
+def discarded(pantograph) -> tuple[Pantograph, dict, int]:
+    """An instance whose last step of 0.1 s was discarded, its values before that, and the status."""
+    p = pantograph(HOPELESS)
+    p.step(0.002)
+    values = p.all_values()
+    p["contact_force"] = 300.0
+    p.log.clear()
+    return p, values | {"contact_force": 300.0}, refusal(p.slave.doStep, p.time, 0.1)
+
+
+def test_an_unsolvable_step_is_discarded_and_leaves_the_state_as_it_was(pantograph):
+    p, before, status = discarded(pantograph)
+    assert status == fmi2Discard
+    assert p.all_values() == before
+
+
+def test_the_last_successful_time_is_that_before_the_step(pantograph):
+    p, _, _ = discarded(pantograph)
+    assert p.slave.getRealStatus(fmi2LastSuccessfulTime) == 0.002
+    assert p.slave.getBooleanStatus(fmi2Terminated) is False
+
+
+def test_the_reason_is_logged(pantograph):
+    """Time, degree of freedom, residual, iterations."""
+    p, _, _ = discarded(pantograph)
+    lines = [m for m in p.log if m.category == "logStatusDiscard"]
+    assert len(lines) == 1 and lines[0].status == fmi2Discard
+    assert "0.00" in lines[0].text and "iteration" in lines[0].text and "unbalanced" in lines[0].text
+    assert any(name in lines[0].text for name in ("head", "alpha", "beta", "upper frame", "lower frame"))
+
+
+def test_a_discarded_step_can_be_left_by_restoring_a_state_by_reset_or_by_terminate(pantograph):
+    p, _, _ = discarded(pantograph)
+    p.reset()
+    p.initialize()
+    p.step(0.01)
+    q = pantograph(HOPELESS)
+    q.step(0.002)
+    state, values = q.slave.getFMUstate(), q.all_values()
+    q["contact_force"] = 300.0
+    assert refusal(q.slave.doStep, 0.002, 0.1) == fmi2Discard
+    q.slave.setFMUstate(state)
+    assert q.all_values() == values
+    q.slave.freeFMUstate(state)
+    r, _, _ = discarded(pantograph)
+    r.slave.terminate()
+
+
+def test_a_discarded_step_leaves_no_trace_in_what_follows(pantograph):
+    """Undone, with the static force again, it goes on bit for bit like an instance that never tried."""
+    p, untouched = pantograph(HOPELESS), pantograph(HOPELESS)
+    for instance in (p, untouched):
+        instance.step(0.002)
+    state = p.slave.getFMUstate()
+    p["contact_force"] = 300.0
+    assert refusal(p.slave.doStep, 0.002, 0.1) == fmi2Discard
+    p.slave.setFMUstate(state)
+    p.slave.freeFMUstate(state)
+    for instance in (p, untouched):
+        instance.step(0.1)
+    assert p.all_values() == untouched.all_values()
+
+
+def test_a_difficult_step_is_halved_and_counted(pantograph):
+    """Few iterations allowed, but enough for shorter steps."""
+    p = pantograph(
+        {
+            "drive": "Displacement",
+            "solver.tangent": "Exact",
+            "solver.max_iterations": 6,
+            "solver.step": 0.004,
+        },
+        categories=["logSolver"],
+    )
+    status = 0
+    for n in range(100):
+        p["head_displacement"] = 0.004 * (n % 7)
+        status = max(status, refusal(p.step, 0.004))
+        if status:
+            break
+    assert p["solver.refinements"] > 0
+    assert any(m.category == "logSolver" for m in p.log)
+
+
+@pytest.mark.parametrize("tangent", ["Resolvent", "Mean", "Secant", "Exact"])
+def test_every_tangent_leads_to_the_same_motion(pantograph, tangent):
+    def motion(parameters: dict) -> list[float]:
+        p = pantograph(
+            {
+                "drive": "Displacement",
+                "zspring.tau": 50.0,
+                "solver.tolerance": 1e-10,
+                "solver.max_iterations": 200,
+            }
+            | parameters
+        )
+        for n in range(200):
+            p["head_displacement"] = 0.01 * (1 - (1 - min(1, n / 100) ** 2) ** 2)
+            p.step(0.002)
+        return list(p.reals(["contact.force", "zspring.alpha", "lower_frame.z"]))
+
+    assert motion({"solver.tangent": tangent}) == pytest.approx(motion({}), rel=1e-6)
