@@ -57,6 +57,7 @@ def receptances(path: Path) -> dict[tuple[float, float], complex]:
 
 
 def test_frf_writes_the_receptance_that_the_fmu_has(pantograph, tmp_path):
+    """But for where on the sine the internal steps happen to lie, which stick and slip feel."""
     out, _ = zspring(
         tmp_path, "frf", *SMALL, "--tolerance", "1e-7", "--max-periods", "2000", "--output", "out"
     )
@@ -64,7 +65,7 @@ def test_frf_writes_the_receptance_that_the_fmu_has(pantograph, tmp_path):
     assert sorted(found) == [(a, f) for a in (0.5, 4.0) for f in (3.0, 6.5, 9.5, 12.5)]
     for (amplitude, frequency), value in found.items():
         p = pantograph({"drive": "Bench"})
-        assert value == pytest.approx(bench_point(p, frequency, amplitude, settled=1e-8), rel=1e-3)
+        assert value == pytest.approx(bench_point(p, frequency, amplitude, settled=1e-8), rel=5e-3)
     assert (tmp_path / "out/frf.png").read_bytes().startswith(PNG)
     assert "resonances" in out and "points in" in out and "0.5" in out
 
@@ -121,12 +122,14 @@ def test_an_interrupted_measurement_continues_to_the_same_file(tmp_path):
 
 
 def test_both_benches_agree(tmp_path):
+    """The inner bench knows the head's acceleration, the outer one samples positions: equal to order h^2."""
+    settings = [*SMALL, "--tolerance", "1e-5", "--set", "solver.step=5e-4"]
     for way in ("bench", "inputs"):
-        zspring(tmp_path, "frf", *SMALL, "--tolerance", "1e-5", "--through", way, "--output", way)
+        zspring(tmp_path, "frf", *settings, "--through", way, "--output", way)
     inside, outside = (receptances(tmp_path / way / "frf.csv") for way in ("bench", "inputs"))
     assert inside.keys() == outside.keys()
     for key in inside:
-        assert outside[key] == pytest.approx(inside[key], rel=0.02), key
+        assert outside[key] == pytest.approx(inside[key], rel=5e-3), key
 
 
 def test_sweeps_up_down_and_from_rest_agree_where_the_steady_state_is_unique(tmp_path):

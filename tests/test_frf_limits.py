@@ -95,9 +95,9 @@ def test_each_bound_is_the_linearisation_of_its_non_linear_head(pantograph, susp
     assert large / small == pytest.approx(4, rel=0.2)
 
 
-@pytest.mark.parametrize("acceleration", [0.5, 4.0])
+@pytest.mark.parametrize("acceleration", [0.25, 0.5])
 def test_both_friction_laws_have_nearly_the_same_frf(pantograph, acceleration):
-    """The regularised law differs from dry friction by its creep, which vanishes as tau grows."""
+    """The regularised law differs from dry friction by its creep, in proportion to 1 / tau."""
     frequency = 6.0
     dry = receptance(pantograph({"drive": "Bench", "friction": "Coulomb"}), frequency, acceleration)
 
@@ -106,4 +106,4 @@ def test_both_friction_laws_have_nearly_the_same_frf(pantograph, acceleration):
         return abs(receptance(p, frequency, acceleration) / dry - 1)
 
     assert deviation(1e3) < 0.05
-    assert deviation(1e4) < 0.5 * deviation(1e3)
+    assert deviation(1e3) / deviation(1e4) == pytest.approx(10, rel=0.1)

@@ -35,9 +35,8 @@ def test_published_linear_pantographs_have_their_analytic_receptance(pantograph,
     linear = published(name)
     p = pantograph(PRECISE | PUBLISHED[name] | {"suspension": "Linear", "drive": "Bench", "solver.step": STEP})
     for frequency in FREQUENCIES:
-        assert abs(bench_point(p, frequency, 0.5) - linear.receptance(frequency)) < step_error(
-            linear, frequency
-        )
+        h = bench_point(p, frequency, 0.5)
+        assert abs(h - linear.receptance(frequency)) < step_error(linear, frequency)
 
 
 def test_the_massless_lower_frame_on_a_stiff_spring_is_the_two_mass_model_of_en_50318():
@@ -54,7 +53,8 @@ def test_the_massless_lower_frame_on_a_stiff_spring_is_the_two_mass_model_of_en_
 @pytest.mark.parametrize("inertia", [7.5e-4, 0.0])
 @pytest.mark.parametrize("suspension", ["LinearLocked", "LinearFree"])
 def test_both_linear_bounds_have_their_analytic_receptance(pantograph, suspension, inertia):
-    rods = {"zspring.J1": inertia, "zspring.J2": inertia}
+    """A damper c1, which the published table lacks: undamped rods, with a mode at 64 Hz, would never settle."""
+    rods = {"zspring.J1": inertia, "zspring.J2": inertia, "c1": 1000.0}
     p = pantograph(PRECISE | rods | {"suspension": suspension, "drive": "Bench", "solver.step": STEP})
     head = ZSpringLinear.of(p)
     if suspension == "LinearLocked":
@@ -64,9 +64,8 @@ def test_both_linear_bounds_have_their_analytic_receptance(pantograph, suspensio
     else:
         linear = LinearPantograph.of(p, head, rods=(inertia, inertia))
     for frequency in FREQUENCIES:
-        assert abs(bench_point(p, frequency, 0.25) - linear.receptance(frequency)) < step_error(
-            linear, frequency
-        )
+        h = bench_point(p, frequency, 0.25)
+        assert abs(h - linear.receptance(frequency)) < step_error(linear, frequency)
 
 
 @pytest.mark.parametrize(
@@ -85,16 +84,8 @@ def test_dsa_380_has_its_natural_frequencies(pantograph, k1, natural, head_fixed
 
     masses = ["head.z", "upper_frame.z", "lower_frame.z"]
     for drive, outputs, expected in (("Force", masses, natural), ("Displacement", masses[1:], head_fixed)):
-        p = pantograph(
-            {
-                "drive": drive,
-                "suspension": "Linear",
-                "k1": k1,
-                "c3": 0.0,
-                "solver.alpha": 0.0,
-                "solver.step": 2e-4,
-            }
-        )
+        undamped = {"c3": 0.0, "solver.alpha": 0.0, "solver.step": 2e-4}
+        p = pantograph(undamped | {"drive": drive, "suspension": "Linear", "k1": k1})
         p["uplift.lower_frame"] = 100.0
         p.step(0.05)
         p["uplift.lower_frame"] = 0.0

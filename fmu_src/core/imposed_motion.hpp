@@ -1,14 +1,12 @@
 // A position given at communication points (imposed head, wire height), made a motion in between.
 //
 // Without derivatives the value is a target: the position moves to it in a straight line and arrives at the end
-// of the step, so that it never jumps. Velocity and acceleration at the communication points then come from
-// HHT's own relations between position, velocity and acceleration, read backwards: second order, and stable for
-// sampled data of any kind.
+// of the step, so that it never jumps. With derivatives it follows value + rate tau + curvature tau^2/2; what
+// separates the begin of that from where the position was is closed in a straight line.
 //
-// With derivatives the position follows value + rate tau + curvature tau^2/2; what separates its begin from where
-// the position was is closed in a straight line. For the reported acceleration and reaction the curvature goes on
-// with the slope it had since the communication point before: held, it would give the inertia force of the begin
-// of the step at its end.
+// Velocity and acceleration at the communication points come from HHT's own relations between position, velocity
+// and acceleration, read backwards: second order, and stable for sampled data of any kind. Derivatives as given
+// belong to the begin of the step and say less of its end, where the reaction is reported.
 #pragma once
 
 #include "parameters.hpp"
@@ -22,13 +20,11 @@ struct MotionState {
   double velocity = 0;          // m/s
   double acceleration = 0;      // m/s2
   double acceleration_hht = 0;  // m/s2, HHT's memory, of hht_alpha times the last step's length later
-  double curvature = 0;         // m/s2, as given for the last step
-  double curvature_length = 0;  // s, of that step; 0 where no curvature was given
 };
 
 template <class Visitor>
 void visit(MotionState& m, Visitor&& f) {
-  f(m.position), f(m.velocity), f(m.acceleration), f(m.acceleration_hht), f(m.curvature), f(m.curvature_length);
+  f(m.position), f(m.velocity), f(m.acceleration), f(m.acceleration_hht);
 }
 
 // The motion over one communication step of `length` s. Linear in the start's motion and the input's values, so
@@ -41,11 +37,11 @@ class ImposedMotion {
   const MotionState& end() const { return end_; }
 
  private:
+  double position(double tau) const;
+
   MotionState start_, end_;
   Signal input_;
   double length_;
-  double gap_ = 0;   // m, from the input to where the position was
-  double jerk_ = 0;  // m/s3
 };
 
 }  // namespace zspring

@@ -55,8 +55,7 @@ struct Signal {
   double value = 0;
   double rate = 0;
   double curvature = 0;
-  bool has_rate = false;  // derivatives were given: `value` belongs to the begin of the step
-  bool has_curvature = false;
+  bool has_derivatives = false;  // rate or curvature were given: `value` belongs to the begin of the step
 
   double at(double tau) const { return value + tau * (rate + 0.5 * curvature * tau); }
 };

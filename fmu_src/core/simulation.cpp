@@ -10,8 +10,13 @@ namespace zspring {
 namespace {
 
 constexpr int most_halvings = 10;         // to 1/1024 of the internal step
-constexpr double rounding_of_time = 1e-9;  // of an internal step: hosts add up their communication points
+constexpr double rounding_of_time = 1e-6;  // of an internal step: hosts add up their communication points
 constexpr int mass_dof[] = {U1, U2, U3};
+
+void set_forces(const Inputs& u, double tau, Boundary& b) {
+  for (int k = 0; k < 3; ++k) b.uplift[k] = u.uplift[k].at(tau);
+  b.contact_force = u.contact_force.at(tau);
+}
 
 const Signal& position_input(Drive drive, const Inputs& u) {
   return drive == Drive::Wire ? u.wire_height : u.head_displacement;
@@ -48,15 +53,9 @@ MechanicalState Simulation::at_rest(const Inputs& inputs) const {
   return s;
 }
 
-// What jumps at a communication point. A force takes HHT's memory of the acceleration with it; else the first step
-// would still feel the old force, an error of first order. An imposed velocity costs the work of an impulse.
+// A force that jumps at a communication point takes HHT's memory of the acceleration with it; else the first step
+// would still feel the old force, an error of first order. Linear, so that it serves variations as well.
 void Simulation::meet(const Boundary& b0, MechanicalState& s) const {
-  if (hht_.head_imposed()) s.work += 0.5 * mechanics_.mass[U1] * (b0.velocity * b0.velocity - s.v[U1] * s.v[U1]);
-  meet_variation(b0, s);
-}
-
-// The linear part of it, of values or of their variations.
-void Simulation::meet_variation(const Boundary& b0, MechanicalState& s) const {
   const Vector5& mass = mechanics_.mass;
   for (int k = 0; k < 3; ++k)
     if (mass[mass_dof[k]] > 0) s.a[mass_dof[k]] += (b0.uplift[k] - s.boundary.uplift[k]) / mass[mass_dof[k]];
@@ -64,10 +63,7 @@ void Simulation::meet_variation(const Boundary& b0, MechanicalState& s) const {
     s.a[U1] -= (b0.contact_force - s.contact_force) / mass[U1];
     s.contact_force = b0.contact_force;
   }
-  if (hht_.head_imposed()) {
-    s.v[U1] = b0.velocity;
-    s.contact_force = hht_.reaction(b0, s.internal);
-  }
+  if (hht_.head_imposed()) s.contact_force = hht_.reaction(b0, s.internal);
   s.boundary = b0;
 }
 
@@ -95,51 +91,60 @@ bool Simulation::cover(MechanicalState& s, const BoundaryAt& boundary, const Bou
 
 template <class OnStep>
 bool Simulation::run(SimulationState& state, const Held& held, OnStep&& on_step, AdvanceFailure& failure) const {
+  return mechanics_.parameters.drive == Drive::Bench ? run_bench(state, held, on_step, failure)
+                                                     : run_inputs(state, held, on_step, failure);
+}
+
+template <class OnStep>
+bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_step, AdvanceFailure& failure) const {
   const Parameters& p = mechanics_.parameters;
-  const double H = held.length, largest = p.solver.step;
   MechanicalState& s = state.mechanical;
+  Bench bench(state.bench);
+  bench.tune(held.bench_frequency, held.bench_acceleration, p.solver.step);
+  const double rounding = rounding_of_time * bench.grid_step();
+  const double end_time = held.length + state.bench.carry;
+  double done = 0;                          // s since the begin of the communication step, at a node or a cut
+  double next_node = bench.to_next_node();  // s likewise; counted from the first, so that rounding does not add up
+  const double first_node = next_node;
+  double nodes = 0;
+
   Boundary b0, b1;
-  const auto forces = [&](double tau, Boundary& b) {
-    for (int k = 0; k < 3; ++k) b.uplift[k] = held.inputs.uplift[k].at(tau);
-    b.contact_force = held.inputs.contact_force.at(tau);
-  };
-
-  if (p.drive == Drive::Bench) {
-    Bench bench(state.bench);
-    bench.tune(held.bench_frequency, held.bench_acceleration, largest);
-    const double rounding = rounding_of_time * bench.grid_step();
-    double left = H + state.bench.carry;
-    double done = 0;  // when the bench's present node or cut was, s since the begin of the communication step
-    const auto boundary = [&](double tau, Boundary& b) {
-      forces(tau, b);
-      bench.motion(tau - done, b);
-    };
-    forces(0, b0);
-    Phasor begin = bench.motion(0, b0);
-    meet(b0, s);
-    while (left > rounding) {
-      const bool reaches_node = left >= bench.to_next_node() - rounding;
-      const double h = reaches_node ? bench.to_next_node() : left;
-      forces(done + h, b1);
-      const Phasor end = bench.motion(h, b1);
-      const double force = s.contact_force - p.static_force;
-      if (!cover(s, boundary, b0, b1, done, h, 0, on_step, failure)) return false;
-      bench.advance(h, reaches_node, begin, force, end, s.contact_force - p.static_force);
-      b0 = b1;
-      begin = end;
-      done += h;
-      left -= h;
-    }
-    state.bench.carry = left;
-    return true;
-  }
-
-  const ImposedMotion motion(state.motion, position_input(p.drive, held.inputs), H, p.solver.hht_alpha);
   const auto boundary = [&](double tau, Boundary& b) {
-    forces(tau, b);
+    set_forces(held.inputs, tau, b);
+    bench.motion(tau - done, b);
+  };
+  set_forces(held.inputs, 0, b0);
+  Phasor begin = bench.motion(0, b0);
+  meet(b0, s);
+  while (end_time - done > rounding) {
+    const bool reaches_node = end_time >= next_node - rounding;
+    const double h = reaches_node ? bench.to_next_node() : end_time - done;
+    set_forces(held.inputs, done + h, b1);
+    const Phasor end = bench.motion(h, b1);
+    const double force = s.contact_force - p.static_force;
+    if (!cover(s, boundary, b0, b1, done, h, 0, on_step, failure)) return false;
+    bench.advance(h, reaches_node, begin, force, end, s.contact_force - p.static_force);
+    b0 = b1;
+    begin = end;
+    done = reaches_node ? next_node : end_time;
+    if (reaches_node) next_node = first_node + ++nodes * bench.grid_step();
+  }
+  state.bench.carry = end_time - done;
+  return true;
+}
+
+template <class OnStep>
+bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on_step, AdvanceFailure& failure) const {
+  const Parameters& p = mechanics_.parameters;
+  const double H = held.length;
+  MechanicalState& s = state.mechanical;
+  const ImposedMotion motion(state.motion, position_input(p.drive, held.inputs), H, p.solver.hht_alpha);
+  Boundary b0, b1;
+  const auto boundary = [&](double tau, Boundary& b) {
+    set_forces(held.inputs, tau, b);
     if (p.drive != Drive::Force) motion.at(tau, b);
   };
-  const double n = std::max(1.0, std::ceil(H / largest - rounding_of_time));
+  const double n = std::max(1.0, std::ceil(H / p.solver.step - rounding_of_time));
   boundary(0, b0);
   meet(b0, s);
   for (double i = 0; i < n; ++i) {
@@ -176,7 +181,6 @@ Outputs Simulation::output_rates() const {
       d.contact_force = (to.contact_force - from.contact_force) / h;
       d.boundary.uplift = (b1.uplift - b0.uplift) / h;
       d.boundary.acceleration = (b1.acceleration - b0.acceleration) / h;
-      d.boundary.acceleration_change = (b1.acceleration_change - b0.acceleration_change) / h;
     };
     run(again, held_, quotient, failure);
   }
@@ -202,8 +206,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) const {
   Inputs du = direction;
   Signal& position = p.drive == Drive::Wire ? du.wire_height : du.head_displacement;
   const Signal& held_position = position_input(p.drive, held_.inputs);
-  position.has_rate = held_position.has_rate;
-  position.has_curvature = held_position.has_curvature;
+  position.has_derivatives = held_position.has_derivatives;
   const ImposedMotion motion(MotionState(), position, held_.length, p.solver.hht_alpha);
   const bool moves = p.drive == Drive::Displacement || p.drive == Drive::Wire;
 
@@ -216,12 +219,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) const {
   };
   MechanicalState d;
   Boundary db0 = boundary_change(0);
-  meet_variation(db0, d);
-  if (p.drive == Drive::Displacement) {
-    Boundary b0;
-    ImposedMotion(before_.motion, held_.inputs.head_displacement, held_.length, p.solver.hht_alpha).at(0, b0);
-    d.work = mechanics_.mass[U1] * b0.velocity * db0.velocity;
-  }
+  meet(db0, d);
   double tau = 0;
   const auto linearized = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0, const Boundary& b1,
                               double h) {

@@ -58,11 +58,15 @@ class Simulation {
   // Drives `state` through a communication step; on_step(from, to, b0, b1, h) sees each accepted internal step.
   template <class OnStep>
   bool run(SimulationState& state, const Held& held, OnStep&& on_step, AdvanceFailure& failure) const;
+  template <class OnStep>
+  bool run_bench(SimulationState& state, const Held& held, OnStep& on_step, AdvanceFailure& failure) const;
+  template <class OnStep>
+  bool run_inputs(SimulationState& state, const Held& held, OnStep& on_step, AdvanceFailure& failure) const;
+  // One internal step, halved as often as it takes.
   template <class BoundaryAt, class OnStep>
   bool cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin, double h,
              int halvings, OnStep& on_step, AdvanceFailure& failure) const;
   void meet(const Boundary& b0, MechanicalState& s) const;
-  void meet_variation(const Boundary& db0, MechanicalState& d) const;
 
   Mechanics mechanics_;
   Hht hht_;
@@ -79,7 +83,7 @@ void visit(SimulationState& s, Visitor&& f) {
 
 template <class Visitor>
 void visit(Signal& s, Visitor&& f) {
-  f(s.value), f(s.rate), f(s.curvature), f(s.has_rate), f(s.has_curvature);
+  f(s.value), f(s.rate), f(s.curvature), f(s.has_derivatives);
 }
 
 template <class Visitor>

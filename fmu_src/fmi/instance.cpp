@@ -135,7 +135,7 @@ void Instance::set_input_derivatives(const fmi2ValueReference references[], size
   for (size_t i = 0; i < n; ++i) {
     Signal& s = variables[references[i]].binding.input(inputs_);
     (orders[i] == 1 ? s.rate : s.curvature) = values[i];
-    (orders[i] == 1 ? s.has_rate : s.has_curvature) = true;
+    s.has_derivatives = true;
   }
 }
 

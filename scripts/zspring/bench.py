@@ -40,7 +40,8 @@ class FmuBench:
         self.instance.step(self._time, duration)
         self._time += duration
         real, imaginary, self.change, self.periods = self.instance.get(
-            ["bench.H_re", "bench.H_im", "bench.change", "bench.periods"])
+            ["bench.H_re", "bench.H_im", "bench.change", "bench.periods"]
+        )
         self.H = complex(real, imaginary)
 
     def save(self) -> dict[str, Any]:

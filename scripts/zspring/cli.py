@@ -26,14 +26,16 @@ MOST_NUMBERS = 100_000
 
 
 class Numbers(click.ParamType):
-    """Positive numbers and ranges START:STOP:STEP, separated by commas or blanks; ascending, without doubles."""
+    """Positive numbers and ranges START:STOP:STEP between commas or blanks; sorted, without doubles."""
 
     name = "numbers"
 
     def convert(self, value, param, ctx) -> tuple[float, ...]:
         if isinstance(value, tuple):
             return value
-        numbers = {number for part in value.replace(",", " ").split() for number in self._part(part, param, ctx)}
+        numbers = {
+            number for part in value.replace(",", " ").split() for number in self._part(part, param, ctx)
+        }
         return tuple(sorted(numbers)) or self.fail("needs at least one number", param, ctx)
 
     def _part(self, part: str, param, ctx) -> list[float]:
@@ -54,15 +56,28 @@ class Numbers(click.ParamType):
 
 
 fmu_option = click.option(
-    "--fmu", "fmu_path", type=click.Path(path_type=Path), metavar="FILE",
-    help="Use this FMU instead of the one in the package.")
+    "--fmu",
+    "fmu_path",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Use this FMU instead of the one in the package.",
+)
 set_option = click.option(
-    "--set", "assignments", multiple=True, metavar="NAME=VALUE",
+    "--set",
+    "assignments",
+    multiple=True,
+    metavar="NAME=VALUE",
     help="Set a parameter of the FMU, in its unit or by the name of an enumeration's item; repeatable. "
-         "`zspring info` lists them.")
+    "`zspring info` lists them.",
+)
 format_option = click.option(
-    "--format", "suffix", type=click.Choice(["png", "svg"]), default="png", show_default=True,
-    help="Format of the figure.")
+    "--format",
+    "suffix",
+    type=click.Choice(["png", "svg"]),
+    default="png",
+    show_default=True,
+    help="Format of the figure.",
+)
 
 
 @contextmanager
@@ -81,74 +96,184 @@ def commands() -> None:
 
 
 @commands.command()
-@click.option("--amplitudes", type=Numbers(), default=STANDARD.amplitudes, metavar="LIST",
-              help="Peak accelerations of the imposed sine in m/s2, e.g. 0.25,4.  [default: 0.25,0.5,1,2,4,8]")
-@click.option("--frequencies", type=Numbers(), default=STANDARD.frequencies, metavar="LIST",
-              help="In Hz: numbers and ranges START:STOP:STEP, e.g. 1,2,3:13:0.1.  [default: 0.5:20:0.25]")
-@click.option("--direction", type=click.Choice(["up", "down", "rest"]), default=STANDARD.direction,
-              show_default=True,
-              help="Sweep the frequency up or down without stopping, or begin each point in the static state.")
+@click.option(
+    "--amplitudes",
+    type=Numbers(),
+    default=STANDARD.amplitudes,
+    metavar="LIST",
+    help="Peak accelerations of the imposed sine in m/s2, e.g. 0.25,4.  [default: 0.25,0.5,1,2,4,8]",
+)
+@click.option(
+    "--frequencies",
+    type=Numbers(),
+    default=STANDARD.frequencies,
+    metavar="LIST",
+    help="In Hz: numbers and ranges START:STOP:STEP, e.g. 1,2,3:13:0.1.  [default: 0.5:20:0.25]",
+)
+@click.option(
+    "--direction",
+    type=click.Choice(["up", "down", "rest"]),
+    default=STANDARD.direction,
+    show_default=True,
+    help="Sweep the frequency up or down without stopping, or begin each point in the static state.",
+)
 @set_option
-@click.option("--quantity", type=click.Choice(list(QUANTITIES)), default="receptance", show_default=True,
-              help="What to draw: receptance H = -Z/F or dynamic stiffness 1/H.")
-@click.option("--output", type=click.Path(path_type=Path, file_okay=False), metavar="DIR",
-              help="Folder of the results.  [default: results/frf-FRICTION-DIRECTION, and a code for the "
-                   "settings where they differ from the standard figure's]")
-@click.option("--tolerance", type=click.FloatRange(min=0, min_open=True), default=STANDARD.tolerance,
-              show_default=True,
-              help="A point is settled when H differs by no more than this, relatively, from the period before "
-                   f"and from {LOOK_PERIODS} periods before.")
-@click.option("--min-periods", type=click.IntRange(min=1), default=STANDARD.min_periods, show_default=True,
-              help="Fewest periods of a point, not counting the ramp to it.")
-@click.option("--max-periods", type=click.IntRange(min=2 * LOOK_PERIODS), default=STANDARD.max_periods, show_default=True,
-              help="Most periods of a point; it is marked if it has not settled by then.")
-@click.option("--stroke", type=click.FloatRange(min=0, min_open=True), default=STANDARD.stroke, show_default=True,
-              help="Largest displacement peak in m; points that need more are left out and marked.")
-@click.option("--through", type=click.Choice(list(BENCHES)), default=STANDARD.through, show_default=True,
-              help="Use the FMU's own bench, or command the head step by step from outside (slower).")
-@click.option("--error-estimate", is_flag=True,
-              help="Measure at half the internal step, too, and estimate the error of H from both.")
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N",
-              help="Sweeps at a time (amplitudes; single points from rest).  [default: number of processors]")
+@click.option(
+    "--quantity",
+    type=click.Choice(list(QUANTITIES)),
+    default="receptance",
+    show_default=True,
+    help="What to draw: receptance H = -Z/F or dynamic stiffness 1/H.",
+)
+@click.option(
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Folder of the results.  [default: results/frf-FRICTION-DIRECTION, and a code for the "
+    "settings where they differ from the standard figure's]",
+)
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(min=0, min_open=True),
+    default=STANDARD.tolerance,
+    show_default=True,
+    help="A point is settled when H differs by no more than this, relatively, from the period before "
+    f"and from {LOOK_PERIODS} periods before.",
+)
+@click.option(
+    "--min-periods",
+    type=click.IntRange(min=1),
+    default=STANDARD.min_periods,
+    show_default=True,
+    help="Fewest periods of a point, not counting the ramp to it.",
+)
+@click.option(
+    "--max-periods",
+    type=click.IntRange(min=2 * LOOK_PERIODS),
+    default=STANDARD.max_periods,
+    show_default=True,
+    help="Most periods of a point; it is marked if it has not settled by then.",
+)
+@click.option(
+    "--stroke",
+    type=click.FloatRange(min=0, min_open=True),
+    default=STANDARD.stroke,
+    show_default=True,
+    help="Largest displacement peak in m; points that need more are left out and marked.",
+)
+@click.option(
+    "--through",
+    type=click.Choice(list(BENCHES)),
+    default=STANDARD.through,
+    show_default=True,
+    help="Use the FMU's own bench, or command the head step by step from outside (slower).",
+)
+@click.option(
+    "--error-estimate",
+    is_flag=True,
+    help="Measure at half the internal step, too, and estimate the error of H from both.",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Sweeps at a time (amplitudes; single points from rest).  [default: number of processors]",
+)
 @format_option
 @fmu_option
-def frf(amplitudes, frequencies, direction, assignments, quantity, output, tolerance, min_periods, max_periods,
-        stroke, through, error_estimate, jobs, suffix, fmu_path) -> None:
+def frf(
+    amplitudes,
+    frequencies,
+    direction,
+    assignments,
+    quantity,
+    output,
+    tolerance,
+    min_periods,
+    max_periods,
+    stroke,
+    through,
+    error_estimate,
+    jobs,
+    suffix,
+    fmu_path,
+) -> None:
     """Measure the first-order FRF by stepped sine with controlled response.
 
-    Without options: the standard figure. Writes frf.csv and frf.png, and prints resonances and antiresonances.
+    Without options: the standard figure. Writes frf.csv and frf.png, and prints resonances and
+    antiresonances.
 
     Ctrl-C keeps all finished points, and the same command goes on from there. With other settings in the same
     folder the measurement begins anew.
     """
     if max_periods < min_periods:
-        raise click.BadParameter(f"{max_periods}: must not be below --min-periods {min_periods}",
-                                 param_hint="--max-periods")
+        raise click.BadParameter(
+            f"{max_periods}: must not be below --min-periods {min_periods}", param_hint="--max-periods"
+        )
     with opened(fmu_path) as fmu:
         parameters = fmu.variables.parse_assignments(assignments, but_not=BENCH_PARAMETERS)
-        settings = FrfSettings(amplitudes, frequencies, parameters, direction, through, tolerance, min_periods,
-                               max_periods, stroke)
-        run_frf(fmu, settings, output or default_folder(fmu, settings), quantity, suffix,
-                jobs or os.cpu_count() or 1, error_estimate)
+        settings = FrfSettings(
+            amplitudes,
+            frequencies,
+            parameters,
+            direction,
+            through,
+            tolerance,
+            min_periods,
+            max_periods,
+            stroke,
+        )
+        run_frf(
+            fmu,
+            settings,
+            output or default_folder(fmu, settings),
+            quantity,
+            suffix,
+            jobs or os.cpu_count() or 1,
+            error_estimate,
+        )
 
 
 @commands.command()
 @click.option("--drive", help="What moves the head, as --set drive=...: Force, Displacement, Wire or Bench.")
 @set_option
-@click.option("--input", "input_path", type=click.Path(path_type=Path), metavar="FILE.csv",
-              help="Inputs over time: a column 'time [s]' and columns named after inputs, as 'wire_height [mm]'.  "
-                   "[default: all inputs keep their start values]")
-@click.option("--interpolation", type=click.Choice(["linear", "cubic"]), default="linear", show_default=True,
-              help="Between the rows of the inputs. Use cubic for measured positions: corners are jumps in "
-                   "velocity, and the contact force shows them.")
-@click.option("--stop", "stop_time", type=float, metavar="T",
-              help="Stop time in s.  [default: where the inputs end; without inputs that of the FMU]")
+@click.option(
+    "--input",
+    "input_path",
+    type=click.Path(path_type=Path),
+    metavar="FILE.csv",
+    help="Inputs over time: a column 'time [s]' and columns named after inputs, as 'wire_height [mm]'.  "
+    "[default: all inputs keep their start values]",
+)
+@click.option(
+    "--interpolation",
+    type=click.Choice(["linear", "cubic"]),
+    default="linear",
+    show_default=True,
+    help="Between the rows of the inputs. Use cubic for measured positions: corners are jumps in "
+    "velocity, and the contact force shows them.",
+)
+@click.option(
+    "--stop",
+    "stop_time",
+    type=float,
+    metavar="T",
+    help="Stop time in s.  [default: where the inputs end; without inputs that of the FMU]",
+)
 @click.option("--step", type=float, metavar="H", help="Communication step in s.  [default: that of the FMU]")
-@click.option("--output", type=click.Path(path_type=Path, file_okay=False), default=Path("results/simulation"),
-              show_default=True, metavar="DIR", help="Folder of the results.")
+@click.option(
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=Path("results/simulation"),
+    show_default=True,
+    metavar="DIR",
+    help="Folder of the results.",
+)
 @format_option
 @fmu_option
-def simulate(drive, assignments, input_path, interpolation, stop_time, step, output, suffix, fmu_path) -> None:
+def simulate(
+    drive, assignments, input_path, interpolation, stop_time, step, output, suffix, fmu_path
+) -> None:
     """Simulate any drive with inputs from a CSV file.
 
     Writes simulation.csv with all outputs, and a figure. After Ctrl-C the rows so far are kept.

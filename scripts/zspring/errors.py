@@ -11,7 +11,7 @@ class ZSpringError(Exception):
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """"; did you mean a or b?" for the closest known names, or an empty string."""
+    """ "; did you mean a or b?" for the closest known names, or an empty string."""
     by_lower = {other.lower(): other for other in known}
     close = difflib.get_close_matches(name.lower(), by_lower, n=2, cutoff=0.6)
     return f"; did you mean {' or '.join(by_lower[other] for other in close)}?" if close else ""

@@ -71,7 +71,7 @@ class Fmu:
 
     @contextmanager
     def instances(self, count: int = 1) -> Iterator[list[Instance]]:
-        """That many instances, freed at the end. Made in one thread since loading changes the working folder."""
+        """That many instances, freed at the end. Made in one thread: loading changes the working folder."""
         with ExitStack() as stack:
             instances = []
             for number in range(count):
@@ -116,16 +116,24 @@ class Instance:
         callbacks.freeMemory = fmpy.fmi2.defaultCallbacks.freeMemory
         try:
             self.slave = fmpy.fmi2.FMU2Slave(
-                instanceName=name, guid=fmu.description.guid, unzipDirectory=str(fmu.folder),
-                modelIdentifier=fmu.description.coSimulation.modelIdentifier, libraryPath=str(library))
+                instanceName=name,
+                guid=fmu.description.guid,
+                unzipDirectory=str(fmu.folder),
+                modelIdentifier=fmu.description.coSimulation.modelIdentifier,
+                libraryPath=str(library),
+            )
             self.slave.instantiate(callbacks=callbacks)
         except Exception as error:  # fmpy raises nothing more specific when it cannot load or instantiate
             raise FmuError("; ".join(self._log) or str(error)) from None
         categories = [category.name for category in fmu.description.logCategories]
         self.slave.setDebugLogging(True, [name for name in categories if name.startswith("logStatus")])
 
-    def start(self, parameters: Mapping[str, Value], inputs: Mapping[str, float] | None = None,
-              start_time: float = 0.0) -> None:
+    def start(
+        self,
+        parameters: Mapping[str, Value],
+        inputs: Mapping[str, float] | None = None,
+        start_time: float = 0.0,
+    ) -> None:
         """A new run from the static state: reset, set parameters and first inputs, initialise."""
         with self.refusals():
             if self._used:
@@ -141,15 +149,20 @@ class Instance:
         """Set variables by name."""
         with self.refusals():
             for setter, group in self._by_call(_SET, values):
-                getattr(self.slave, setter)([variable.valueReference for variable in group],
-                                            [values[variable.name] for variable in group])
+                getattr(self.slave, setter)(
+                    [variable.valueReference for variable in group],
+                    [values[variable.name] for variable in group],
+                )
 
-    def set_derivatives(self, order: int, derivatives: Mapping[str, float]) -> None:
-        """Set derivatives of that order of Real inputs by name; an empty mapping is no call."""
-        if derivatives:
+    def set_slopes(self, slopes: Mapping[str, float]) -> None:
+        """Set the first derivatives of Real inputs by name; nothing for an empty mapping."""
+        if slopes:
             with self.refusals():
-                self.slave.setRealInputDerivatives([self.variables[name].valueReference for name in derivatives],
-                                                   [order] * len(derivatives), list(derivatives.values()))
+                self.slave.setRealInputDerivatives(
+                    [self.variables[name].valueReference for name in slopes],
+                    [1] * len(slopes),
+                    list(slopes.values()),
+                )
 
     def get(self, names: Sequence[str]) -> list[Value]:
         """Values of variables by name."""
@@ -186,8 +199,9 @@ class Instance:
     def free(self) -> None:
         self.slave.freeInstance()
 
-    def _by_call(self, calls: Mapping[str, str],
-                 names: Iterable[str]) -> Iterable[tuple[str, list[ScalarVariable]]]:
+    def _by_call(
+        self, calls: Mapping[str, str], names: Iterable[str]
+    ) -> Iterable[tuple[str, list[ScalarVariable]]]:
         """The variables that one FMI call can handle together, by the name of that call."""
         groups: dict[str, list[ScalarVariable]] = {}
         for name in names:

@@ -19,7 +19,8 @@ from .fmu import Fmu, StepDiscarded
 from .input_bench import InputBench
 from .variables import Value
 
-BENCHES = {"bench": FmuBench, "inputs": InputBench}
+Bench = FmuBench | InputBench
+BENCHES: dict[str, type[Bench]] = {"bench": FmuBench, "inputs": InputBench}
 BENCH_PARAMETERS = ("drive", "bench.frequency", "bench.acceleration")  # set by the measurement itself
 LOOK_PERIODS = 4  # periods between two looks at the steady-state criterion
 
@@ -64,7 +65,7 @@ class FrfPoint:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Points that one instance measures one after the other, beginning in `state` of the bench, or at rest."""
+    """Points that one instance measures one after the other, from `state` of the bench or from rest."""
 
     amplitude: float
     frequencies: tuple[float, ...]
@@ -81,8 +82,9 @@ def sweeps(settings: FrfSettings) -> list[Sweep]:
     """All sweeps of the figure: one for each amplitude, or one for each point with direction "rest"."""
     result = []
     for amplitude in settings.amplitudes:
-        frequencies = tuple(f for f in settings.frequencies
-                            if FrfPoint(amplitude, f, "").displacement <= settings.stroke)
+        frequencies = tuple(
+            f for f in settings.frequencies if FrfPoint(amplitude, f, "").displacement <= settings.stroke
+        )
         if settings.direction == "rest":
             result += [Sweep(amplitude, (frequency,)) for frequency in frequencies]
         elif frequencies:
@@ -90,8 +92,9 @@ def sweeps(settings: FrfSettings) -> list[Sweep]:
     return result
 
 
-def measure(fmu: Fmu, settings: FrfSettings, todo: list[Sweep], jobs: int,
-            stop: threading.Event) -> Iterator[tuple[FrfPoint, dict[str, Any] | None]]:
+def measure(
+    fmu: Fmu, settings: FrfSettings, todo: list[Sweep], jobs: int, stop: threading.Event
+) -> Iterator[tuple[FrfPoint, dict[str, Any] | None]]:
     """Points as they get ready, each with the bench's state, None where the next one starts from rest.
 
     `jobs` sweeps run at a time, each on an instance of its own. Ends early once `stop` is set.
@@ -102,7 +105,7 @@ def measure(fmu: Fmu, settings: FrfSettings, todo: list[Sweep], jobs: int,
     for sweep in todo:
         waiting.put(sweep)
 
-    def work(bench) -> None:
+    def work(bench: Bench) -> None:
         try:
             while not stop.is_set():
                 for result in _run(bench, waiting.get_nowait(), settings, stop):
@@ -133,8 +136,9 @@ def measure(fmu: Fmu, settings: FrfSettings, todo: list[Sweep], jobs: int,
             raise
 
 
-def _run(bench, sweep: Sweep, settings: FrfSettings,
-         stop: threading.Event) -> Iterator[tuple[FrfPoint, dict[str, Any] | None]]:
+def _run(
+    bench: Bench, sweep: Sweep, settings: FrfSettings, stop: threading.Event
+) -> Iterator[tuple[FrfPoint, dict[str, Any] | None]]:
     """The points of one sweep, until `stop` is set; after a failed one it goes on from rest."""
     state = sweep.state
     if state:
@@ -150,8 +154,9 @@ def _run(bench, sweep: Sweep, settings: FrfSettings,
         yield point, state
 
 
-def _settle(bench, amplitude: float, frequency: float, settings: FrfSettings,
-            stop: threading.Event) -> FrfPoint | None:
+def _settle(
+    bench: Bench, amplitude: float, frequency: float, settings: FrfSettings, stop: threading.Event
+) -> FrfPoint | None:
     """Run until H is steady or the most periods allowed have passed; None if stopped before.
 
     Steady: H differs from that of the period before and from that of the last look by at most the tolerance,
@@ -174,5 +179,13 @@ def _settle(bench, amplitude: float, frequency: float, settings: FrfSettings,
     except StepDiscarded as error:
         status = f"{FAILED}: {error}"
     used = (after - earlier for earlier, after in zip(before, bench.instance.get(counters)))
-    return FrfPoint(amplitude, frequency, status, H, bench.periods, bench.change, *used,
-                    *bench.instance.get(["solver.iterations_max"]))
+    return FrfPoint(
+        amplitude,
+        frequency,
+        status,
+        H,
+        bench.periods,
+        bench.change,
+        *used,
+        *bench.instance.get(["solver.iterations_max"]),
+    )

@@ -16,7 +16,9 @@ from .variables import Value, text, with_unit
 Curve = tuple[np.ndarray, np.ndarray]  # frequency (n,) in Hz, receptance (n,) in m/N
 
 
-def file_head(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], quantity: str) -> dict[str, str]:
+def file_head(
+    fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], quantity: str
+) -> dict[str, str]:
     """Everything that defines the numbers of an FRF file, and the date (UTC).
 
     `parameters` are all parameters of the FMU, calculated ones included.
@@ -47,12 +49,15 @@ def file_head(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], 
 
 def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value]) -> str:
     """Title of the figure: what was measured and whether any number of the Z-spring is synthetic."""
-    suspension, friction = (text(fmu.variables[name], parameters[name]) for name in ("suspension", "friction"))
+    suspension, friction = (
+        text(fmu.variables[name], parameters[name]) for name in ("suspension", "friction")
+    )
     model = f"Z-spring, friction {friction}" if suspension == "ZSpring" else f"suspension {suspension}"
     course = "each point from rest" if settings.direction == "rest" else f"sweep {settings.direction}"
     synthetic = suspension != "Linear" and fmu.variables.synthetic(parameters)
-    return (f"Pantograph head, first-order FRF\n{model}, {course}"
-            + ("; Z-spring parameters synthetic" if synthetic else ""))
+    return f"Pantograph head, first-order FRF\n{model}, {course}" + (
+        "; Z-spring parameters synthetic" if synthetic else ""
+    )
 
 
 def linear_bounds(settings: FrfSettings, parameters: Mapping[str, Value], linear: bool) -> dict[str, Curve]:
@@ -68,13 +73,20 @@ def resonance_table(points: Sequence[FrfPoint], bounds: Mapping[str, Curve]) -> 
     measured = {}
     for amplitude in sorted({point.amplitude for point in points}):
         curve = sorted((p for p in points if p.amplitude == amplitude), key=lambda p: p.frequency)
-        measured[f"{amplitude:g} m/s2"] = (np.array([p.frequency for p in curve]), np.array([p.H for p in curve]))
+        measured[f"{amplitude:g} m/s2"] = (
+            np.array([p.frequency for p in curve]),
+            np.array([p.H for p in curve]),
+        )
     first, *last = curves.items()
-    rows = [(name, *(_cells(found) for found in extremes(*curve)))
-            for name, curve in [first, *measured.items(), *last]]
+    rows = [
+        (name, *(_cells(found) for found in extremes(*curve)))
+        for name, curve in [first, *measured.items(), *last]
+    ]
     width = max(len(row[1]) for row in rows)
-    return [f"{'':10s}  {'resonances, Hz (mm/N)':{width}s}  antiresonances, Hz (mm/N)",
-            *(f"{name:>10s}  {maxima:{width}s}  {minima}" for name, maxima, minima in rows)]
+    return [
+        f"{'':10s}  {'resonances, Hz (mm/N)':{width}s}  antiresonances, Hz (mm/N)",
+        *(f"{name:>10s}  {maxima:{width}s}  {minima}" for name, maxima, minima in rows),
+    ]
 
 
 def solver_line(points: Iterable[FrfPoint]) -> str:
@@ -82,8 +94,10 @@ def solver_line(points: Iterable[FrfPoint]) -> str:
     points = list(points)
     steps, iterations = sum(p.steps for p in points), sum(p.iterations for p in points)
     worst, halvings = max(p.iterations_max for p in points), sum(p.refinements for p in points)
-    return (f"Newton: {iterations / max(steps, 1):.2f} iterations per step, at most {worst}; "
-            f"{steps} steps, {halvings} halvings")
+    return (
+        f"Newton: {iterations / max(steps, 1):.2f} iterations per step, at most {worst}; "
+        f"{steps} steps, {halvings} halvings"
+    )
 
 
 def richardson(H: complex, H_half: complex) -> float:
@@ -94,15 +108,20 @@ def richardson(H: complex, H_half: complex) -> float:
 def error_line(errors: Mapping[tuple[float, float], float]) -> str:
     """Median and worst of the estimates by (amplitude, frequency)."""
     (amplitude, frequency), worst = max(errors.items(), key=lambda item: item[1])
-    return (f"error estimate of H from half the step: {100 * np.median(list(errors.values())):.2g} % median, "
-            f"{100 * worst:.2g} % worst (at {frequency:g} Hz, {amplitude:g} m/s2)")
+    return (
+        f"error estimate of H from half the step: {100 * np.median(list(errors.values())):.2g} % median, "
+        f"{100 * worst:.2g} % worst (at {frequency:g} Hz, {amplitude:g} m/s2)"
+    )
 
 
 def doubtful_lines(points: Iterable[FrfPoint]) -> list[str]:
     """One line for each point that did not settle or failed."""
-    return [f"{p.amplitude:g} m/s2, {p.frequency:g} Hz: {p.status}"
-            + (f" after {p.periods} periods (change {p.change:.2g})" if p.status == NOT_SETTLED else "")
-            for p in points if p.status == NOT_SETTLED or p.status.startswith(FAILED)]
+    return [
+        f"{p.amplitude:g} m/s2, {p.frequency:g} Hz: {p.status}"
+        + (f" after {p.periods} periods (change {p.change:.2g})" if p.status == NOT_SETTLED else "")
+        for p in points
+        if p.status == NOT_SETTLED or p.status.startswith(FAILED)
+    ]
 
 
 def _cells(found: Iterable[tuple[float, float]]) -> str:

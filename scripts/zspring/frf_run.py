@@ -1,4 +1,4 @@
-"""One FRF from settings to result folder: measure with a progress bar, write CSV and figure, print the table."""
+"""One FRF from settings to result folder: measure with progress bar, write CSV and figure, print table."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ MOST_DOUBTFUL_LINES = 10
 Points = dict[tuple[float, float], FrfPoint]  # by amplitude in m/s2 and frequency in Hz
 
 
-def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, quantity: str, suffix: str, jobs: int,
-            error_estimate: bool) -> None:
+def run_frf(
+    fmu: Fmu, settings: FrfSettings, folder: Path, quantity: str, suffix: str, jobs: int, error_estimate: bool
+) -> None:
     """Measure, going on where an interrupted run in the folder stopped, then write and print all results.
 
     quantity        "receptance" or "stiffness"
@@ -41,13 +42,15 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, quantity: str, suffix
     parameters = all_parameters(fmu, settings)
     head = report.file_head(fmu, settings, parameters, quantity)
     record = FrfRecord(folder / "frf.partial.csv", head, quantity)
-    points, speed = _measure(fmu, settings, record, jobs)
+    points, speed = _measure(fmu, settings, record, jobs, "step")
     records, errors = [record], None
     if error_estimate:
-        finer = replace(settings, parameters={**settings.parameters, "solver.step": parameters["solver.step"] / 2})
+        finer = replace(
+            settings, parameters={**settings.parameters, "solver.step": parameters["solver.step"] / 2}
+        )
         finer_head = report.file_head(fmu, finer, all_parameters(fmu, finer), quantity)
         records.append(FrfRecord(folder / "frf.half-step.partial.csv", finer_head, quantity))
-        finer_points, _ = _measure(fmu, finer, records[-1], jobs)
+        finer_points, _ = _measure(fmu, finer, records[-1], jobs, "half step")
         estimates = {key: report.richardson(point.H, finer_points[key].H) for key, point in points.items()}
         errors = {key: error for key, error in estimates.items() if math.isfinite(error)}
 
@@ -56,7 +59,9 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, quantity: str, suffix
     write_frf(csv_path, head, results, quantity, errors)
     suspension = text(fmu.variables["suspension"], parameters["suspension"])
     bounds = report.linear_bounds(settings, parameters, linear=suspension == "Linear")
-    figure = plots.frf_figure(results, bounds, quantity, settings.stroke, report.title(fmu, settings, parameters))
+    figure = plots.frf_figure(
+        results, bounds, quantity, settings.stroke, report.title(fmu, settings, parameters)
+    )
     plots.save(figure, figure_path)
     for record in records:
         record.path.unlink()
@@ -80,12 +85,13 @@ def all_parameters(fmu: Fmu, settings: FrfSettings) -> dict[str, Value]:
     names = fmu.variables.names("parameter", "calculatedParameter")
     with fmu.instances() as (instance,):
         BENCHES[settings.through](instance, settings.parameters).start(
-            settings.frequencies[0], settings.amplitudes[0])
+            settings.frequencies[0], settings.amplitudes[0]
+        )
         return dict(zip(names, instance.get(names)))
 
 
 def default_folder(fmu: Fmu, settings: FrfSettings) -> Path:
-    """results/frf-<friction>-<direction>, with a hash of the settings if others differ from the standard ones."""
+    """results/frf-<friction>-<direction>, with a hash of the settings if others are not standard."""
     friction = fmu.variables["friction"]
     value = settings.parameters.get("friction", int(friction.start))
     name = f"frf-{text(friction, value).lower()}-{settings.direction}"
@@ -96,27 +102,34 @@ def default_folder(fmu: Fmu, settings: FrfSettings) -> Path:
     return Path("results") / name
 
 
-def _measure(fmu: Fmu, settings: FrfSettings, record: FrfRecord, jobs: int) -> tuple[Points, str]:
-    """All points of the settings and a line on the time it took."""
+def _measure(fmu: Fmu, settings: FrfSettings, record: FrfRecord, jobs: int, label: str) -> tuple[Points, str]:
+    """All points of the settings, with a labelled progress bar, and a line on the time it took."""
     planned = sweeps(settings)
     todo = record.remaining(planned)
     total, missing = (sum(len(sweep.frequencies) for sweep in some) for some in (planned, todo))
     if record.is_stale:
-        print(f"{record.path} is of other settings: begun anew")
+        print(f"{record.path} does not fit these settings: begun anew")
     elif missing < total:
         print(f"going on after {total - missing} of {total} points in {record.path}")
     begin = time.perf_counter()
-    with (stop_on_interrupt() as stop, record,
-          tqdm(total=total, initial=total - missing, unit=" points", disable=None) as bar):
+    with (
+        stop_on_interrupt() as stop,
+        record,
+        tqdm(total=total, initial=total - missing, desc=label, unit=" points", disable=None) as bar,
+    ):
         for point, state in measure(fmu, settings, todo, jobs, stop):
             record.append(point, state)
             bar.update()
     seconds = time.perf_counter() - begin
     if stop.is_set():
-        raise Interrupted(f"interrupted after {len(record.points)} of {total} points, kept in {record.path}; "
-                          "the same command goes on from there")
+        raise Interrupted(
+            f"interrupted after {len(record.points)} of {total} points, kept in {record.path}; "
+            "the same command goes on from there"
+        )
+    count = f"{missing} of {total}" if missing < total else total
     keys = [(sweep.amplitude, frequency) for sweep in planned for frequency in sweep.frequencies]
-    return ({key: record.points[key] for key in keys},
-            f"{missing} points in {seconds:.2f} s, {missing / max(seconds, 1e-9):.0f} points/s; "
-            f"{len(left_out(settings))} left out: stroke > {1e3 * settings.stroke:g} mm")
-
+    return (
+        {key: record.points[key] for key in keys},
+        f"{count} points in {seconds:.2f} s, {missing / max(seconds, 1e-9):.0f} points/s; "
+        f"{len(left_out(settings))} left out: stroke > {1e3 * settings.stroke:g} mm",
+    )

@@ -1,6 +1,8 @@
 """A bench outside the FMU: drive Displacement, commanded step by step, analysed here.
 
-Value and input derivatives of orders 1 and 2 tell the FMU how the head moves in each communication step.
+The commanded position is a target that the head reaches at the end of the communication step. The FMU
+derives velocity and acceleration from the positions, where its own bench knows them, so that both agree to
+second order in the step.
 """
 
 from __future__ import annotations
@@ -8,7 +10,7 @@ from __future__ import annotations
 import base64
 import math
 from collections.abc import Mapping
-from ctypes import c_double, c_int, c_uint
+from ctypes import c_double, c_uint
 from typing import Any
 
 import numpy as np
@@ -52,16 +54,13 @@ class InputBench:
         if (frequency, peak) != (self._frequency, self._peak):
             # In whole periods of the new frequency, about as long as one of the slower frequency.
             ramp_periods = max(1, round(frequency / self._frequency))
-            self._drive(*self._ramp(ramp_periods))
+            self._drive(self._ramp(ramp_periods))
             self._frequency, self._peak = frequency, peak
             periods = max(0, periods - ramp_periods)
-        n = np.arange(self._steps + 1)
-        phase = self._phase + 2 * math.pi * n / self._steps
-        omega = 2 * math.pi * frequency
-        position, velocity = peak * np.sin(phase), peak * omega * np.cos(phase)
-        analyser = 2j / self._steps * np.exp(-1j * phase[1:])
+        phase = self._phase + 2 * math.pi * np.arange(1, self._steps + 1) / self._steps
+        targets, analyser = peak * np.sin(phase), 2j / self._steps * np.exp(-1j * phase)
         for _ in range(periods):
-            force = analyser @ self._drive(position, velocity, -(omega**2) * position)
+            force = analyser @ self._drive(targets)
             H = complex(-peak / force)
             self.change = abs(H - self.H) / abs(H) if self.periods else 1.0
             self.H = H
@@ -69,8 +68,13 @@ class InputBench:
 
     def save(self) -> dict[str, Any]:
         """The state after `run`, fit for JSON."""
-        return {"time": self._time, "phase": self._phase, "frequency": self._frequency, "peak": self._peak,
-                "fmu": base64.b64encode(self.instance.save()).decode()}
+        return {
+            "time": self._time,
+            "phase": self._phase,
+            "frequency": self._frequency,
+            "peak": self._peak,
+            "fmu": base64.b64encode(self.instance.save()).decode(),
+        }
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Back to a saved state; what follows is the same to the last bit."""
@@ -79,52 +83,39 @@ class InputBench:
         self._time, self._phase = state["time"], state["phase"]
         self._frequency, self._peak = state["frequency"], state["peak"]
 
-    def _ramp(self, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Position (m), velocity and acceleration that lead to the target within `periods`; moves the phase on.
+    def _ramp(self, periods: int) -> np.ndarray:
+        """Positions (n,) in m at the ends of the n steps that lead to the target; moves the phase on.
 
         Frequency and displacement peak go over by the quintic with no slope and no curvature at its ends.
         """
         frequency, peak = self._target
         steps = self._steps * periods
-        length = steps / (self._steps * frequency)
-        x = np.arange(steps + 1) / steps
-        p = x**3 * (10 - 15 * x + 6 * x**2)
-        slope, curvature = 30 * x**2 * (1 - x) ** 2, 60 * x * (1 - 3 * x + 2 * x**2)
-        integral = x**4 * (2.5 - 3 * x + x**2)
-
-        rise, change = peak - self._peak, frequency - self._frequency
-        X, dX, ddX = self._peak + rise * p, rise * slope / length, rise * curvature / length**2
-        omega, d_omega = 2 * math.pi * (self._frequency + change * p), 2 * math.pi * change * slope / length
-        phase = self._phase + 2 * math.pi * length * (self._frequency * x + change * integral)
-        sine, cosine = np.sin(phase), np.cos(phase)
+        x = np.arange(1, steps + 1) / steps
+        p, integral = x**3 * (10 - 15 * x + 6 * x**2), x**4 * (2.5 - 3 * x + x**2)
+        turns = periods / frequency * (self._frequency * x + (frequency - self._frequency) * integral)
+        phase = self._phase + 2 * math.pi * turns
         self._phase = float(phase[-1]) % (2 * math.pi)
-        return (X * sine, dX * sine + X * omega * cosine,
-                (ddX - X * omega**2) * sine + (2 * dX * omega + X * d_omega) * cosine)
+        return (self._peak + (peak - self._peak) * p) * np.sin(phase)
 
-    def _drive(self, position: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray) -> np.ndarray:
-        """Move the head along n + 1 positions (m, m/s, m/s2), one communication step from each to the next.
+    def _drive(self, targets: np.ndarray) -> np.ndarray:
+        """Move the head to n positions (m), one communication step to each.
 
         Returns the contact force (n,) in N at the end of every step.
         """
         frequency, _ = self._target
         step = 1 / (self._steps * frequency)
-        command = zip(position[:-1].tolist(), velocity[:-1].tolist(), acceleration[:-1].tolist())
 
-        # Half the time goes into the calls, so the arguments are made once.
+        # Half the time goes into the calls, so their arguments are made once.
         fmu, variables = self.instance.slave, self.instance.variables
-        component = fmu.component
-        reference = variables["head_displacement"].valueReference
-        head, head_twice = (c_uint * 1)(reference), (c_uint * 2)(reference, reference)
+        head = (c_uint * 1)(variables["head_displacement"].valueReference)
         contact = (c_uint * 1)(variables["contact.force"].valueReference)
-        orders = (c_int * 2)(1, 2)
-        value, derivatives, force = (c_double * 1)(), (c_double * 2)(), (c_double * 1)()
+        target, force = (c_double * 1)(), (c_double * 1)()
         forces = []
         with self.instance.refusals():
-            for i, (value[0], derivatives[0], derivatives[1]) in enumerate(command):
-                fmu.fmi2SetReal(component, head, 1, value)
-                fmu.fmi2SetRealInputDerivatives(component, head_twice, 2, orders, derivatives)
-                fmu.fmi2DoStep(component, self._time + i * step, step, 1)
-                fmu.fmi2GetReal(component, contact, 1, force)
+            for i, target[0] in enumerate(targets.tolist()):
+                fmu.fmi2SetReal(fmu.component, head, 1, target)
+                fmu.fmi2DoStep(fmu.component, self._time + i * step, step, 1)
+                fmu.fmi2GetReal(fmu.component, contact, 1, force)
                 forces.append(force[0])
         self._time += len(forces) * step
         return np.array(forces)

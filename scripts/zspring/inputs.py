@@ -1,4 +1,4 @@
-"""Inputs over time: files with a column "time [s]" and columns named after the FMU's inputs, and interpolation."""
+"""Inputs over time: files with columns "time [s]" and the names of the FMU's inputs, and interpolation."""
 
 from __future__ import annotations
 
@@ -19,16 +19,20 @@ def read_inputs(path: Path, variables: Variables) -> tuple[np.ndarray, dict[str,
     """Time (n,) in s and the inputs by name, each (n,) in the FMU's unit, n >= 2.
 
     A column is named NAME or NAME [UNIT]; the unit may be the FMU's or one of its display units. Lines that
-    begin with # are comments. Raises ZSpringError, with line and column, for an unknown column or unit, a gap,
-    a value that is no finite number, and time that does not increase.
+    begin with # are comments. Raises ZSpringError, with line and column, for an unknown column or unit, a
+    gap, a value that is no finite number, and time that does not increase.
     """
     try:
         with open(path, encoding="utf-8-sig", newline="") as file:
-            numbered = [(number, line) for number, line in enumerate(file, 1) if line.strip() and line[0] != "#"]
+            numbered = [
+                (number, line) for number, line in enumerate(file, 1) if line.strip() and line[0] != "#"
+            ]
     except UnicodeDecodeError:
         raise ZSpringError(f"{path}: no text in UTF-8") from None
-    rows = [(number, [cell.strip() for cell in row])
-            for (number, _), row in zip(numbered, csv.reader(line for _, line in numbered))]
+    rows = [
+        (number, [cell.strip() for cell in row])
+        for (number, _), row in zip(numbered, csv.reader(line for _, line in numbered))
+    ]
     if len(rows) < 3:
         raise ZSpringError(f"{path}: needs a line of column names and at least two rows")
     columns = [_column(path, label, variables) for label in rows[0][1]]
@@ -44,28 +48,22 @@ def read_inputs(path: Path, variables: Variables) -> tuple[np.ndarray, dict[str,
     time = values.pop("time")
     late = np.flatnonzero(np.diff(time) <= 0)
     if late.size:
-        number, (before, after) = rows[late[0] + 2][0], time[late[0]:late[0] + 2]
+        number, (before, after) = rows[late[0] + 2][0], time[late[0] : late[0] + 2]
         raise ZSpringError(f"{path}, line {number}: time = {after:g} s after {before:g} s: must increase")
     return time, values
 
 
-def interpolate(time: np.ndarray, values: np.ndarray, points: np.ndarray,
-                kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Values (n + 1,) at the communication points, and first and second derivative (n,) at the begin of each step.
+def interpolate(time: np.ndarray, values: np.ndarray, points: np.ndarray, kind: str) -> np.ndarray:
+    """Values (n,) of an input at the communication points (n,) in s.
 
-    time, values    (m,) the rows of an input
-    points          (n + 1,) communication points in s, within `time`
-    kind            "linear": straight from one communication point to the next; "cubic": a cubic spline through
-                    the rows, so that velocity and acceleration of a position do not jump
+    time, values    (m,) the rows of the input
+    kind            "linear", or "cubic": a spline, so velocity and acceleration of positions do not jump
     """
-    if kind == "cubic":
-        from scipy.interpolate import CubicSpline  # slow to load
+    if kind == "linear":
+        return np.interp(points, time, values)
+    from scipy.interpolate import CubicSpline  # slow to load
 
-        spline = CubicSpline(time, values)
-        return spline(points), spline(points[:-1], 1), spline(points[:-1], 2)
-    at_points = np.interp(points, time, values)
-    slopes = np.diff(at_points) / np.diff(points)
-    return at_points, slopes, np.zeros_like(slopes)
+    return CubicSpline(time, values)(points)
 
 
 def _column(path: Path, label: str, variables: Variables) -> tuple[str, float, float]:

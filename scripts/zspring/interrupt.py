@@ -14,7 +14,7 @@ class Interrupted(Exception):
 
 @contextmanager
 def stop_on_interrupt() -> Iterator[threading.Event]:
-    """An event that the first Ctrl-C sets; the second one interrupts at once. Never set outside the main thread."""
+    """An event that the first Ctrl-C sets; the second interrupts at once. Only for the main thread."""
     stop = threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield stop

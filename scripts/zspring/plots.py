@@ -16,12 +16,20 @@ from .frf import LEFT_OUT, NOT_SETTLED, FrfPoint
 from .results import QUANTITIES, as_quantity, phase_degrees
 
 BOUND_STYLES = {"locked": "--", "free": ":", "linear": "-."}
-BOUND_LABELS = {"locked": "linear bound: rods locked", "free": "linear bound: rods free",
-                "linear": "linear suspension k1"}
+BOUND_LABELS = {
+    "locked": "linear bound: rods locked",
+    "free": "linear bound: rods free",
+    "linear": "linear suspension k1",
+}
 
 
-def frf_figure(points: Sequence[FrfPoint], bounds: Mapping[str, tuple[np.ndarray, np.ndarray]], quantity: str,
-               stroke: float, title: str) -> Figure:
+def frf_figure(
+    points: Sequence[FrfPoint],
+    bounds: Mapping[str, tuple[np.ndarray, np.ndarray]],
+    quantity: str,
+    stroke: float,
+    title: str,
+) -> Figure:
     """Magnitude and phase over frequency, one colour for each amplitude, between the linear bounds.
 
     points      of one figure, in any order
@@ -50,14 +58,31 @@ def frf_figure(points: Sequence[FrfPoint], bounds: Mapping[str, tuple[np.ndarray
         magnitude.semilogy(frequency[doubtful], np.abs(value[doubtful]), "o", color=color, fillstyle="none")
         missing = frequency[[p.status == LEFT_OUT for p in curve]]
         height = np.full(missing.shape, 0.02 + 0.022 * number)
-        magnitude.plot(missing, height, "x", color=color, markersize=4, transform=magnitude.get_xaxis_transform())
+        magnitude.plot(
+            missing, height, "x", color=color, markersize=4, transform=magnitude.get_xaxis_transform()
+        )
 
     handles = magnitude.get_legend_handles_labels()[0]
-    for status, marker, label in ((NOT_SETTLED, "o", "not settled"), (LEFT_OUT, "x", f"left out: stroke > {1e3 * stroke:g} mm")):
+    for status, marker, label in (
+        (NOT_SETTLED, "o", "not settled"),
+        (LEFT_OUT, "x", f"left out: stroke > {1e3 * stroke:g} mm"),
+    ):
         if any(point.status == status for point in points):
-            handles.append(Line2D([], [], color="gray", linestyle="none", marker=marker, fillstyle="none",
-                                  markersize=5, label=label))
-    magnitude.legend(handles=handles, fontsize=8, ncols=2, title="peak acceleration of the head", title_fontsize=8)
+            handles.append(
+                Line2D(
+                    [],
+                    [],
+                    color="gray",
+                    linestyle="none",
+                    marker=marker,
+                    fillstyle="none",
+                    markersize=5,
+                    label=label,
+                )
+            )
+    magnitude.legend(
+        handles=handles, fontsize=8, ncols=2, title="peak acceleration of the head", title_fontsize=8
+    )
     symbol = {"receptance": "|H|, receptance", "stiffness": "|1/H|, dynamic stiffness"}[quantity]
     magnitude.set(title=title, ylabel=f"{symbol}  [{QUANTITIES[quantity]}]")
     phase.set(xlabel="frequency  [Hz]", ylabel="phase  [deg]")
@@ -79,9 +104,17 @@ def simulation_figure(columns: Mapping[str, np.ndarray], friction_bound: float, 
     panels = figure.subplots(4, 1, sharex=True)
     time = columns["time"]
     rows = (
-        ("displacement  [mm]", 1e3, {"head": "head.z", "upper frame": "upper_frame.z", "lower frame": "lower_frame.z"}),
+        (
+            "displacement  [mm]",
+            1e3,
+            {"head": "head.z", "upper frame": "upper_frame.z", "lower frame": "lower_frame.z"},
+        ),
         ("contact force  [N]", 1.0, {"contact": "contact.force"}),
-        ("rod angle  [deg]", np.degrees(1.0), {"α, head side": "zspring.alpha", "β, frame side": "zspring.beta"}),
+        (
+            "rod angle  [deg]",
+            np.degrees(1.0),
+            {"α, head side": "zspring.alpha", "β, frame side": "zspring.beta"},
+        ),
         ("friction moment  [N.m]", 1.0, {"α": "zspring.moment_alpha", "β": "zspring.moment_beta"}),
     )
     for axes, (label, factor, names) in zip(panels, rows):

@@ -29,7 +29,9 @@ def zspring_stiffness(parameters: Mapping[str, float]) -> np.ndarray:
     `parameters` holds the FMU's `zspring.k`, `.l0`, `.L1`, `.L2`, `.d` and the calculated `.theta`.
     Returns a 4 x 4 array: N/m, N, and N.m/rad according to row and column.
     """
-    k, l0, L1, L2, d, theta = (parameters[f"zspring.{name}"] for name in ("k", "l0", "L1", "L2", "d", "theta"))
+    k, l0, L1, L2, d, theta = (
+        parameters[f"zspring.{name}"] for name in ("k", "l0", "L1", "L2", "d", "theta")
+    )
     s, c = np.sin(theta), np.cos(theta)
     A = L1 * c + L2 * c - d
     B = -L1 * s - L2 * s + d * np.tan(theta)

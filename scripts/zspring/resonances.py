@@ -13,8 +13,8 @@ def extremes(frequency: np.ndarray, H: np.ndarray) -> tuple[list[Extreme], list[
     """Resonances (maxima of |H|) and antiresonances (minima), in ascending frequency.
 
     frequency   (n,) in Hz, ascending; H (n,) complex, NaN where there is no point
-    Located by the parabola through three neighbours of log |H|. A maximum and a minimum beside each other that
-    differ by less than LEAST_STEP are both left out.
+    Located by the parabola through three neighbours of log |H|. A maximum and a minimum beside each other
+    that differ by less than LEAST_STEP are both left out.
     """
     level = np.log(np.abs(H))
     slopes = np.sign(np.diff(level))
@@ -24,14 +24,16 @@ def extremes(frequency: np.ndarray, H: np.ndarray) -> tuple[list[Extreme], list[
         smallest = int(np.argmin(steps))
         if steps[smallest] >= LEAST_STEP:
             break
-        del turns[smallest:smallest + 2]
-    return ([_vertex(frequency, level, i) for i in turns if slopes[i] < 0],
-            [_vertex(frequency, level, i) for i in turns if slopes[i] > 0])
+        del turns[smallest : smallest + 2]
+    return (
+        [_vertex(frequency, level, i) for i in turns if slopes[i] < 0],
+        [_vertex(frequency, level, i) for i in turns if slopes[i] > 0],
+    )
 
 
 def _vertex(frequency: np.ndarray, level: np.ndarray, i: int) -> Extreme:
     """Frequency and magnitude at the vertex of the parabola through three neighbours."""
-    x = frequency[i - 1:i + 2] - frequency[i]
-    curvature, slope, _ = np.polyfit(x, level[i - 1:i + 2], 2)
+    x = frequency[i - 1 : i + 2] - frequency[i]
+    curvature, slope, _ = np.polyfit(x, level[i - 1 : i + 2], 2)
     shift = -slope / (2 * curvature)
     return float(frequency[i] + shift), float(np.exp(level[i] + slope * shift / 2))

@@ -24,37 +24,71 @@ def as_quantity(H: complex | np.ndarray, quantity: str) -> complex | np.ndarray:
 
 
 def phase_degrees(value: complex | np.ndarray, quantity: str) -> float | np.ndarray:
-    """Phase in degrees, cut where no driving point has it: those lie in -180 to 0 (receptance) or 0 to 180."""
+    """Phase in degrees, cut far from where a driving point has it: -180 to 0 (receptance), 0 to 180."""
     sign = -1 if quantity == "receptance" else 1
     return sign * ((sign * np.degrees(np.angle(value)) + 90) % 360 - 90)
 
 
 def frf_columns(quantity: str) -> list[str]:
     """Column names of an FRF file."""
-    return ["frequency [Hz]", "amplitude [m/s2]", "displacement [m]", "H_re [m/N]", "H_im [m/N]",
-            f"magnitude [{QUANTITIES[quantity]}]", "phase [deg]", "periods", "change", "status",
-            "steps", "iterations", "refinements", "iterations_max"]
+    return [
+        "frequency [Hz]",
+        "amplitude [m/s2]",
+        "displacement [m]",
+        "H_re [m/N]",
+        "H_im [m/N]",
+        f"magnitude [{QUANTITIES[quantity]}]",
+        "phase [deg]",
+        "periods",
+        "change",
+        "status",
+        "steps",
+        "iterations",
+        "refinements",
+        "iterations_max",
+    ]
 
 
 def frf_row(point: FrfPoint, quantity: str) -> list[str]:
     """The point's values in the order of `frf_columns`, exact; empty where nothing was measured."""
     value = as_quantity(point.H, quantity)
-    numbers = [point.frequency, point.amplitude, point.displacement, point.H.real, point.H.imag,
-               abs(value), float(phase_degrees(value, quantity)), point.periods, point.change]
+    numbers = [
+        point.frequency,
+        point.amplitude,
+        point.displacement,
+        point.H.real,
+        point.H.imag,
+        abs(value),
+        float(phase_degrees(value, quantity)),
+        point.periods,
+        point.change,
+    ]
     counts = [point.steps, point.iterations, point.refinements, point.iterations_max]
-    return [*("" if math.isnan(number) else repr(number) for number in numbers), point.status, *map(str, counts)]
+    return [
+        *("" if math.isnan(number) else repr(number) for number in numbers),
+        point.status,
+        *map(str, counts),
+    ]
 
 
 def frf_point(row: Mapping[str, str]) -> FrfPoint:
     """The point of a row, by column name."""
+
     def number(column: str) -> float:
         return float(row[column] or "nan")
 
     return FrfPoint(
-        amplitude=number("amplitude [m/s2]"), frequency=number("frequency [Hz]"), status=row["status"],
-        H=complex(number("H_re [m/N]"), number("H_im [m/N]")), periods=int(row["periods"]),
-        change=number("change"), steps=int(row["steps"]), iterations=int(row["iterations"]),
-        refinements=int(row["refinements"]), iterations_max=int(row["iterations_max"]))
+        amplitude=number("amplitude [m/s2]"),
+        frequency=number("frequency [Hz]"),
+        status=row["status"],
+        H=complex(number("H_re [m/N]"), number("H_im [m/N]")),
+        periods=int(row["periods"]),
+        change=number("change"),
+        steps=int(row["steps"]),
+        iterations=int(row["iterations"]),
+        refinements=int(row["refinements"]),
+        iterations_max=int(row["iterations_max"]),
+    )
 
 
 def write_head(file: TextIO, head: Mapping[str, str], columns: Sequence[str]) -> None:
@@ -64,7 +98,7 @@ def write_head(file: TextIO, head: Mapping[str, str], columns: Sequence[str]) ->
 
 
 def read_table(path: Path) -> tuple[dict[str, str], list[dict[str, str]]]:
-    """Head, and rows by column name, of a CSV file; a last line that was not written to its end is left away."""
+    """Head, and rows by column name, of a CSV file, without a last line that was not written to its end."""
     head, lines = {}, []
     with open(path, encoding="utf-8", newline="") as file:
         for line in file:
@@ -83,7 +117,7 @@ class FrfRecord:
     was never interrupted.
 
     path        of the file
-    head        all settings; a file with another head (but for the date) is stale and begun anew
+    head        all settings; a file with another head (but for the date) is stale and begun anew, and so is one that cannot be read
     """
 
     def __init__(self, path: Path, head: Mapping[str, str], quantity: str):
@@ -93,10 +127,10 @@ class FrfRecord:
         self.points: dict[tuple[float, float], FrfPoint] = {}
         self.is_stale = False
         if path.exists():
-            found, rows = read_table(path)
-            self.is_stale = {**found, "date": ""} != {**self._head, "date": ""}
-            for row in () if self.is_stale else rows:
-                self._keep(frf_point(row), json.loads(row["state"]))
+            try:
+                self._read()
+            except (KeyError, TypeError, ValueError):  # somebody changed the file
+                self.is_stale = True
 
     def remaining(self, sweeps: Iterable[Sweep]) -> list[Sweep]:
         """What is still to be measured of these sweeps, each from the state after its last point so far."""
@@ -129,6 +163,14 @@ class FrfRecord:
     def __exit__(self, *_) -> None:
         self._file.close()
 
+    def _read(self) -> None:
+        head, rows = read_table(self.path)
+        self.is_stale = {**head, "date": ""} != {**self._head, "date": ""}
+        if not self.is_stale:
+            kept = [(frf_point(row), json.loads(row["state"])) for row in rows]
+            for point, state in kept:
+                self._keep(point, state)
+
     def _keep(self, point: FrfPoint, state: dict[str, Any] | None) -> list[str]:
         key = (point.amplitude, point.frequency)
         self.points[key], self._states[key] = point, state
@@ -136,8 +178,13 @@ class FrfRecord:
         return self._rows[key]
 
 
-def write_frf(path: Path, head: Mapping[str, str], points: Sequence[FrfPoint], quantity: str,
-              errors: Mapping[tuple[float, float], float] | None = None) -> None:
+def write_frf(
+    path: Path,
+    head: Mapping[str, str],
+    points: Sequence[FrfPoint],
+    quantity: str,
+    errors: Mapping[tuple[float, float], float] | None = None,
+) -> None:
     """The finished FRF file; `errors` are relative error estimates by (amplitude, frequency)."""
     columns, rows = frf_columns(quantity), [frf_row(point, quantity) for point in points]
     if errors:

@@ -21,8 +21,16 @@ from .variables import Value, text, with_unit
 Inputs = tuple[np.ndarray, Mapping[str, np.ndarray]]  # time (n,) in s, values (n,) by name
 
 
-def simulate(fmu: Fmu, parameters: Mapping[str, Value], inputs: Inputs | None, interpolation: str,
-             stop_time: float | None, step: float | None, folder: Path, suffix: str) -> None:
+def simulate(
+    fmu: Fmu,
+    parameters: Mapping[str, Value],
+    inputs: Inputs | None,
+    interpolation: str,
+    stop_time: float | None,
+    step: float | None,
+    folder: Path,
+    suffix: str,
+) -> None:
     """Simulate and write simulation.csv and the figure simulation.<suffix> into the folder.
 
     inputs          None: all inputs keep their start values
@@ -39,7 +47,9 @@ def simulate(fmu: Fmu, parameters: Mapping[str, Value], inputs: Inputs | None, i
     if inputs and stop_time > inputs[0][-1]:
         raise ZSpringError(f"--stop {stop_time:g} s: the input file ends at {inputs[0][-1]:g} s")
     if not (step > 0 and stop_time > start_time):
-        raise ZSpringError(f"from {start_time:g} s to {stop_time:g} s by {step:g} s: there is nothing to simulate")
+        raise ZSpringError(
+            f"from {start_time:g} s to {stop_time:g} s by {step:g} s: there is nothing to simulate"
+        )
 
     # The last step is shorter where the duration is no multiple of the step.
     count = int(np.ceil((stop_time - start_time) / step * (1 - 1e-12)))
@@ -62,11 +72,15 @@ def simulate(fmu: Fmu, parameters: Mapping[str, Value], inputs: Inputs | None, i
             rows.append([float(times[i]), *instance.get(outputs)])
             writer.writerow(f"{value:.12g}" for value in rows[-1])
             if stop.is_set():
-                raise Interrupted(f"interrupted at {times[i]:g} s; the rows so far are kept in {path}; "
-                                  "the same command begins anew")
+                raise Interrupted(
+                    f"interrupted at {times[i]:g} s; the rows so far are kept in {path}; "
+                    "the same command begins anew"
+                )
 
     drive = text(fmu.variables["drive"], used["drive"])
-    title = f"Pantograph, drive {drive}" + ("; Z-spring parameters synthetic" if fmu.variables.synthetic(used) else "")
+    title = f"Pantograph, drive {drive}"
+    if fmu.variables.synthetic(used):
+        title += "; Z-spring parameters synthetic"
     columns = dict(zip(["time", *outputs], np.array(rows, dtype=float).T))
     figure_path = folder / f"simulation.{suffix}"
     plots.save(plots.simulation_figure(columns, used["zspring.Mf"], title), figure_path)
@@ -75,31 +89,33 @@ def simulate(fmu: Fmu, parameters: Mapping[str, Value], inputs: Inputs | None, i
 
 
 class _Feed:
-    """Hands the inputs over: their values at each communication point and how they go on until the next one."""
+    """Hands the inputs over: at each communication point the value, and the slope to that at the next one."""
 
     def __init__(self, instance: Instance, inputs: Inputs | None, points: np.ndarray, kind: str):
         self._instance = instance
         time, columns = inputs or (points, {})
-        self._signals = {name: interpolate(time, column, points, kind) for name, column in columns.items()}
-        self._orders = (1, 2) if kind == "cubic" else (1,)
+        self._values = {name: interpolate(time, column, points, kind) for name, column in columns.items()}
+        self._slopes = {name: np.diff(values) / np.diff(points) for name, values in self._values.items()}
 
     def values(self, i: int) -> dict[str, float]:
         """All inputs at communication point i."""
-        return {name: float(signal[0][i]) for name, signal in self._signals.items()}
+        return {name: float(values[i]) for name, values in self._values.items()}
 
     def hand_over(self, i: int) -> None:
         """Set the inputs for the step that begins at communication point i."""
         self._instance.set(self.values(i))
-        for order in self._orders:
-            self._instance.set_derivatives(order, {name: signal[order][i] for name, signal in self._signals.items()})
+        self._instance.set_slopes({name: float(slopes[i]) for name, slopes in self._slopes.items()})
 
 
 def _head(fmu: Fmu, parameters: Mapping[str, Value]) -> dict[str, str]:
     """FMU and parameters, calculated ones included, for the head of the file."""
     description = fmu.description
-    return {"FMU": f"{description.modelName} {description.version}", "GUID": description.guid,
-            "synthetic": " ".join(fmu.variables.synthetic(parameters)),
-            **{name: with_unit(fmu.variables[name], value) for name, value in parameters.items()}}
+    return {
+        "FMU": f"{description.modelName} {description.version}",
+        "GUID": description.guid,
+        "synthetic": " ".join(fmu.variables.synthetic(parameters)),
+        **{name: with_unit(fmu.variables[name], value) for name, value in parameters.items()},
+    }
 
 
 def _label(fmu: Fmu, name: str) -> str:

@@ -17,8 +17,10 @@ class Variables:
     def __init__(self, description: ModelDescription):
         self._by_name = {variable.name: variable for variable in description.modelVariables}
         self._display_units = {
-            unit.name: {display.name: (float(display.factor or 1), float(display.offset or 0))
-                        for display in unit.displayUnits}
+            unit.name: {
+                display.name: (float(display.factor or 1), float(display.offset or 0))
+                for display in unit.displayUnits
+            }
             for unit in description.unitDefinitions
         }
 
@@ -57,13 +59,16 @@ class Variables:
                 raise ZSpringError(f"{assignment!r}: must be NAME=VALUE, for example zspring.Mf=0.5")
             values[name] = parse(self.parameter(name), text)
             if name in but_not:
-                raise ZSpringError(f"{assignment}: refused, {', '.join(but_not)} are set by the measurement itself")
+                raise ZSpringError(f"{assignment}: the measurement itself sets {', '.join(but_not)}")
         return values
 
     def synthetic(self, values: Mapping[str, Value]) -> list[str]:
         """Those parameters whose value is the FMU's own and is, by its description, synthetic."""
-        return [name for name, value in values.items()
-                if "(synthetic)" in self[name].description and value == parse(self[name], self[name].start)]
+        return [
+            name
+            for name, value in values.items()
+            if "(synthetic)" in self[name].description and value == parse(self[name], self[name].start)
+        ]
 
     def factor_and_offset(self, variable: ScalarVariable, unit: str) -> tuple[float, float]:
         """(factor, offset) with: value in `unit` = factor * value in the FMU's unit + offset.
@@ -77,7 +82,7 @@ class Variables:
 
 
 def parse(variable: ScalarVariable, text: str) -> Value:
-    """A value of the variable's type. Raises ZSpringError that names the variable, the text and what is allowed."""
+    """A value of the variable's type. Raises ZSpringError with variable, text and what is allowed."""
     try:
         if variable.type == "Real":
             return float(text)
