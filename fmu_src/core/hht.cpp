@@ -227,7 +227,6 @@ void Hht::accept(const HhtCoefficients& c, const MechanicalState& from, const Bo
   to.q = t.q;
   to.v = t.v;
   to.a = t.a;
-  // A sliver of a step says little of the slope and would have it magnified by the next.
   to.a_slope = slope_known(c.h, from.h) ? Vector5((t.a - from.a) / c.h) : from.a_slope;
   to.h = c.h;
   // A rod that sticks has no acceleration; HHT's own would ring and make it crawl.

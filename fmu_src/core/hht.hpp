@@ -44,9 +44,6 @@ struct StepFailure {
   int iterations = 0;
 };
 
-// Whether a step of h after one of h_last tells the slope of the acceleration.
-inline bool slope_known(double h, double h_last) { return h >= 0.25 * h_last; }
-
 class Hht {
  public:
   explicit Hht(const Mechanics& mechanics) : m_(mechanics) {}

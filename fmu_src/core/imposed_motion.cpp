@@ -7,10 +7,13 @@ ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, doub
   const double H = length;
   const double beta = 0.25 * (1 - hht_alpha) * (1 - hht_alpha);
   const double gamma = 0.5 - hht_alpha;
+  const double before = start.acceleration_hht + (start.length > 0 ? hht_alpha * (H - start.length) * start.slope : 0);
+  const double after = (position(H) - start.position - H * start.velocity) / (beta * H * H) - (0.5 - beta) / beta * before;
   end_.position = position(H);
-  end_.acceleration_hht = (end_.position - start.position - H * start.velocity) / (beta * H * H) -
-                          (0.5 - beta) / beta * start.acceleration_hht;
-  end_.velocity = start.velocity + H * ((1 - gamma) * start.acceleration_hht + gamma * end_.acceleration_hht);
+  end_.velocity = start.velocity + H * ((1 - gamma) * before + gamma * after);
+  end_.acceleration_hht = after;
+  end_.slope = slope_known(H, start.length) ? (after - before) / H : start.slope;
+  end_.length = H;
   // HHT's acceleration is the weighted one of both ends; undo the weighting.
   end_.acceleration = (end_.acceleration_hht + hht_alpha * start.acceleration) / (1 + hht_alpha);
 }

@@ -19,12 +19,14 @@ struct MotionState {
   double position = 0;          // m
   double velocity = 0;          // m/s
   double acceleration = 0;      // m/s2
-  double acceleration_hht = 0;  // m/s2, HHT's memory, of hht_alpha times the last step's length later
+  double acceleration_hht = 0;  // m/s2, HHT's memory, of hht_alpha times `length` later
+  double slope = 0;             // m/s3, of acceleration_hht
+  double length = 0;            // s, of the last step
 };
 
 template <class Visitor>
 void visit(MotionState& m, Visitor&& f) {
-  f(m.position), f(m.velocity), f(m.acceleration), f(m.acceleration_hht);
+  f(m.position), f(m.velocity), f(m.acceleration), f(m.acceleration_hht), f(m.slope), f(m.length);
 }
 
 // The motion over one communication step of `length` s. Linear in the start's motion and the input's values, so

@@ -23,6 +23,9 @@ struct Statistics {
 
 // HHT's `a` belongs to t + hht_alpha h, not to t: it is the integrator's memory, not an output. Its slope moves it
 // to where the next step expects it when h changes; without that, steps of varying size are of first order.
+// A sliver of a step says little of the slope and would have it magnified by the next.
+inline bool slope_known(double h, double h_last) { return h >= 0.25 * h_last; }
+
 struct MechanicalState {
   Vector5 q = Vector5::Zero();
   Vector5 v = Vector5::Zero();

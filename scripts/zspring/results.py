@@ -117,7 +117,8 @@ class FrfRecord:
     was never interrupted.
 
     path        of the file
-    head        all settings; a file with another head (but for the date) is stale and begun anew, and so is one that cannot be read
+    head        all settings; a file with another head (but for the date) is stale and begun anew, and so
+                is one that cannot be read
     """
 
     def __init__(self, path: Path, head: Mapping[str, str], quantity: str):
