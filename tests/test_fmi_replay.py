@@ -94,6 +94,27 @@ def test_several_states_live_side_by_side_and_a_handle_can_be_reused(pantograph)
         p.slave.freeFMUstate(state)
 
 
+def test_a_state_can_be_taken_and_restored_before_the_first_step(pantograph):
+    """Instantiated, or in Initialization Mode; parameters and the phase come back too."""
+    p = pantograph({"m1": 8.0}, initialize=False)
+    instantiated = p.slave.getFMUstate()
+    p.slave.setupExperiment(startTime=2.0)
+    p.slave.enterInitializationMode()
+    p["static_force"] = p["contact_force"] = 100.0
+    initializing, values = p.slave.getFMUstate(), p.all_values()
+    p.slave.exitInitializationMode()
+    p.slave.doStep(2.0, 0.1)
+    p.slave.setFMUstate(initializing)
+    assert p.all_values() == values
+    p.slave.exitInitializationMode()
+    p.slave.doStep(2.0, 0.1)
+    p.slave.setFMUstate(instantiated)
+    p.initialize()
+    assert (p["m1"], p["static_force"]) == (8.0, 120.0)
+    for state in (instantiated, initializing):
+        p.slave.freeFMUstate(state)
+
+
 def test_a_state_brings_its_mode_and_time_with_it(pantograph):
     """A stored state also revives an instance after an error or after terminate."""
     p = pantograph()

@@ -30,6 +30,22 @@ def test_the_size_of_the_communication_step_does_not_shape_the_motion(pantograph
     np.testing.assert_allclose(until(end, step), expected, rtol=2e-3, atol=2e-7)
 
 
+@pytest.mark.parametrize("suspension", ["ZSpring", "Linear"])
+@pytest.mark.parametrize("drive, name", [("Displacement", "head_displacement"), ("Wire", "wire_height")])
+@pytest.mark.parametrize("derivatives", [(), (0.0, 0.0)])
+def test_communication_steps_of_wild_sizes_stay_stable(pantograph, drive, name, suspension, derivatives):
+    """Sizes over 2.5 decades, in random order; positions that a finite speed of 2 m/s can reach."""
+    rng = np.random.default_rng(5)
+    p = pantograph({"drive": drive, "suspension": suspension, "contact.k": 5e3})
+    for _ in range(300):
+        size = 10 ** rng.uniform(-3, -0.5)
+        p[name] = float(np.clip(p[name] + rng.uniform(-2, 2) * size, -0.005, 0.005))
+        if derivatives:
+            p.set_derivatives(name, *derivatives)
+        p.step(size)
+        assert abs(p["head.v"]) < 20 and abs(p["contact.force"]) < 1e5
+
+
 def test_one_huge_step_is_taken(pantograph):
     p = pantograph()
     p["contact_force"] = 119.0
@@ -155,6 +171,26 @@ def test_a_gap_between_a_position_with_derivatives_and_where_it_was_is_closed_wi
     np.testing.assert_allclose(
         heights, [0.002 + 0.01 * size for size in (0.001, 0.025, 0.05, 0.1)], atol=1e-15
     )
+
+
+def test_the_tolerance_of_the_experiment_changes_nothing(pantograph):
+    """Some hosts always define one, as large as 0.1; the solver has its own."""
+    plain, loose = pantograph({"drive": "Wire"}), pantograph({"drive": "Wire"}, initialize=False)
+    loose.slave.setupExperiment(tolerance=0.1)
+    loose.slave.enterInitializationMode()
+    loose.slave.exitInitializationMode()
+    for p in (plain, loose):
+        p.run(0.005, 100, [], signals={"wire_height": Signal.cubed_sines([0.003], [1.2])})
+    assert plain.all_values() == loose.all_values()
+
+
+def test_promising_not_to_go_back_changes_nothing(pantograph):
+    p, q = pantograph(), pantograph()
+    for n in range(50):
+        p["contact_force"] = q["contact_force"] = 120.0 + 10 * math.sin(n)
+        p.slave.doStep(n * 2**-7, 2**-7, True)
+        q.slave.doStep(n * 2**-7, 2**-7, False)
+    assert p.all_values() == q.all_values()
 
 
 def test_inputs_set_before_the_experiment_count(pantograph):

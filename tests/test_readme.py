@@ -1,8 +1,9 @@
 """What the README shows is real: its commands run, in order and in one folder, and print what it says.
 
-Convention: in ```console blocks a line "$ command" (continued on lines "> ...") is run; its output follows,
-where a line "..." stands for any lines. Blocks of ```python are run as a script; blocks of ```sh, for setting up
-and what needs a fresh clone, are not. `scripts/frf` is run as the `zspring frf` that it starts.
+Convention: in ```console blocks a line "$ command" (continued on lines "> ...") is run; its output
+follows, where a line "..." stands for any lines. Blocks of ```python are run as a script; blocks of
+```sh, for setting up and what needs a fresh clone, are not. `scripts/frf` is run as the `zspring frf`
+that it starts.
 """
 
 from __future__ import annotations

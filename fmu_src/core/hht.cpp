@@ -144,12 +144,13 @@ bool Hht::solve(const HhtCoefficients& c, const Trial& t, Vector5& r) const {
 }
 
 double Hht::reaction(const Boundary& b, const Vector5& internal) const {
-  return b.uplift[0] - m_.mass[U1] * b.acceleration - internal[U1];
+  return b.uplift[0] - m_.mass[U1] * (b.acceleration + b.acceleration_change) - internal[U1];
 }
 
 Vector5 Hht::push(const Boundary& b, double contact_force) const {
   Vector5 f;
   f << b.uplift[0] - contact_force, 0, 0, b.uplift[1], b.uplift[2];
+  if (head_imposed()) f[U1] -= m_.mass[U1] * b.acceleration_change;
   return f;
 }
 

@@ -2,20 +2,41 @@
 
 namespace zspring {
 
-ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, double length, double hht_alpha)
-    : start_(start), input_(input), length_(length) {
-  const double H = length;
-  const double beta = 0.25 * (1 - hht_alpha) * (1 - hht_alpha);
-  const double gamma = 0.5 - hht_alpha;
-  const double before = start.acceleration_hht + (start.length > 0 ? hht_alpha * (H - start.length) * start.slope : 0);
-  const double after = (position(H) - start.position - H * start.velocity) / (beta * H * H) - (0.5 - beta) / beta * before;
-  end_.position = position(H);
-  end_.velocity = start.velocity + H * ((1 - gamma) * before + gamma * after);
-  end_.acceleration_hht = after;
-  end_.slope = slope_known(H, start.length) ? (after - before) / H : start.slope;
-  end_.length = H;
-  // HHT's acceleration is the weighted one of both ends; undo the weighting.
-  end_.acceleration = (end_.acceleration_hht + hht_alpha * start.acceleration) / (1 + hht_alpha);
+MotionState MotionState::variation() const {
+  MotionState d;
+  d.length = length;
+  d.positions = positions;
+  d.curvatures = curvatures;
+  std::fill_n(d.positions.value, Samples::most, 0.0);
+  std::fill_n(d.curvatures.value, Samples::most, 0.0);
+  return d;
+}
+
+ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, double length)
+    : start_(start), end_(start), input_(input), length_(length) {
+  end_.length = length;
+  end_.position = position(length);
+  if (start.positions.count == 0)
+    for (int i = 0; i + 1 < Samples::most; ++i) end_.positions.append(length, start.position);
+  end_.positions.append(length, end_.position);
+
+  if (input.has_curvature) {
+    Samples& given = end_.curvatures;
+    given.append(start.length, input.curvature);
+    given.count = std::min(given.count, 3.0);
+    // What was seen over short steps tells nothing of the end of a much longer one.
+    if (given.count > 1 && length <= 2 * given.age[1])
+      curvature_change_ = Interpolant(given).value(length) - input.curvature;
+    Boundary b;
+    at(length, b);
+    end_.velocity = b.velocity;
+    end_.acceleration = b.acceleration + b.acceleration_change;
+  } else {
+    const Interpolant path(end_.positions);
+    end_.velocity = path.slope();
+    end_.acceleration = path.curvature();
+    end_.curvatures.count = 0;
+  }
 }
 
 double ImposedMotion::position(double tau) const {
@@ -27,8 +48,15 @@ double ImposedMotion::position(double tau) const {
 void ImposedMotion::at(double tau, Boundary& b) const {
   const double x = tau / length_;
   b.position = position(tau);
-  b.velocity = start_.velocity + x * (end_.velocity - start_.velocity);
-  b.acceleration = start_.acceleration + x * (end_.acceleration - start_.acceleration);
+  if (input_.has_curvature) {
+    b.velocity = input_.rate + tau * input_.curvature - (start_.position - input_.value) / length_;
+    b.acceleration = input_.curvature;
+    b.acceleration_change = x * curvature_change_;
+  } else {
+    b.velocity = start_.velocity + x * (end_.velocity - start_.velocity);
+    b.acceleration = start_.acceleration + x * (end_.acceleration - start_.acceleration);
+    b.acceleration_change = 0;
+  }
 }
 
 }  // namespace zspring

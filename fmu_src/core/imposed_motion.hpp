@@ -1,41 +1,47 @@
 // A position given at communication points (imposed head, wire height), made a motion in between.
 //
 // Without derivatives the value is a target: the position moves to it in a straight line and arrives at the end
-// of the step, so that it never jumps. With derivatives it follows value + rate tau + curvature tau^2/2; what
-// separates the begin of that from where the position was is closed in a straight line.
+// of the step, so that it never jumps. Velocity and acceleration at communication points are those of the
+// polynomial through the last five.
 //
-// Velocity and acceleration at the communication points come from HHT's own relations between position, velocity
-// and acceleration, read backwards: second order, and stable for sampled data of any kind. Derivatives as given
-// belong to the begin of the step and say less of its end, where the reaction is reported.
+// With derivatives the position follows value + rate tau + curvature tau^2/2; what separates the begin of that from
+// where the position was is closed in a straight line. Velocity and acceleration follow it where the curvature is
+// given. That belongs to the begin of the step: for the acceleration and the reaction that are reported at its end
+// it is continued from its last three values, else they would be those of one step earlier.
 #pragma once
 
 #include "parameters.hpp"
+#include "samples.hpp"
 #include "state.hpp"
 
 namespace zspring {
 
 // At the last communication point.
 struct MotionState {
-  double position = 0;          // m
-  double velocity = 0;          // m/s
-  double acceleration = 0;      // m/s2
-  double acceleration_hht = 0;  // m/s2, HHT's memory, of hht_alpha times `length` later
-  double slope = 0;             // m/s3, of acceleration_hht
-  double length = 0;            // s, of the last step
+  double position = 0;      // m
+  double velocity = 0;      // m/s
+  double acceleration = 0;  // m/s2
+  double length = 0;        // s, of the last step
+  Samples positions;        // empty before the first step: at rest until then
+  Samples curvatures;       // as given for the last steps, at their begin
+
+  MotionState variation() const;  // of a motion that does not vary
 };
 
 template <class Visitor>
 void visit(MotionState& m, Visitor&& f) {
-  f(m.position), f(m.velocity), f(m.acceleration), f(m.acceleration_hht), f(m.slope), f(m.length);
+  f(m.position), f(m.velocity), f(m.acceleration), f(m.length);
+  visit(m.positions, f);
+  visit(m.curvatures, f);
 }
 
 // The motion over one communication step of `length` s. Linear in the start's motion and the input's values, so
 // that it also serves as its own derivative: give it variations and it returns the variation.
 class ImposedMotion {
  public:
-  ImposedMotion(const MotionState& start, const Signal& input, double length, double hht_alpha);
+  ImposedMotion(const MotionState& start, const Signal& input, double length);
 
-  void at(double tau, Boundary& b) const;  // sets position, velocity, acceleration; 0 <= tau <= length
+  void at(double tau, Boundary& b) const;  // sets the motion in `b`; 0 <= tau <= length
   const MotionState& end() const { return end_; }
 
  private:
@@ -44,6 +50,7 @@ class ImposedMotion {
   MotionState start_, end_;
   Signal input_;
   double length_;
+  double curvature_change_ = 0;  // m/s2, over the step
 };
 
 }  // namespace zspring

@@ -12,7 +12,8 @@ Vector5 unbalanced_force(const MechanicalState& s) {
 }
 
 double head_acceleration(const Hht& hht, const MechanicalState& s) {
-  return hht.head_imposed() ? s.boundary.acceleration : unbalanced_force(s)[U1] / hht.mechanics().mass[U1];
+  if (hht.head_imposed()) return s.boundary.acceleration + s.boundary.acceleration_change;
+  return unbalanced_force(s)[U1] / hht.mechanics().mass[U1];
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ struct Signal {
   double rate = 0;
   double curvature = 0;
   bool has_derivatives = false;  // rate or curvature were given: `value` belongs to the begin of the step
+  bool has_curvature = false;
 
   double at(double tau) const { return value + tau * (rate + 0.5 * curvature * tau); }
 };

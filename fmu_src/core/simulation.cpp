@@ -53,9 +53,15 @@ MechanicalState Simulation::at_rest(const Inputs& inputs) const {
   return s;
 }
 
-// A force that jumps at a communication point takes HHT's memory of the acceleration with it; else the first step
-// would still feel the old force, an error of first order. Linear, so that it serves variations as well.
+// What jumps at a communication point. A force takes HHT's memory of the acceleration with it; else the first step
+// would still feel the old force, an error of first order. An imposed velocity costs the work of an impulse.
 void Simulation::meet(const Boundary& b0, MechanicalState& s) const {
+  if (hht_.head_imposed()) s.work += 0.5 * mechanics_.mass[U1] * (b0.velocity * b0.velocity - s.v[U1] * s.v[U1]);
+  meet_variation(b0, s);
+}
+
+// The linear part of it, of values or of their variations.
+void Simulation::meet_variation(const Boundary& b0, MechanicalState& s) const {
   const Vector5& mass = mechanics_.mass;
   for (int k = 0; k < 3; ++k)
     if (mass[mass_dof[k]] > 0) s.a[mass_dof[k]] += (b0.uplift[k] - s.boundary.uplift[k]) / mass[mass_dof[k]];
@@ -63,7 +69,10 @@ void Simulation::meet(const Boundary& b0, MechanicalState& s) const {
     s.a[U1] -= (b0.contact_force - s.contact_force) / mass[U1];
     s.contact_force = b0.contact_force;
   }
-  if (hht_.head_imposed()) s.contact_force = hht_.reaction(b0, s.internal);
+  if (hht_.head_imposed()) {
+    s.v[U1] = b0.velocity;
+    s.contact_force = hht_.reaction(b0, s.internal);
+  }
   s.boundary = b0;
 }
 
@@ -138,7 +147,7 @@ bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on
   const Parameters& p = mechanics_.parameters;
   const double H = held.length;
   MechanicalState& s = state.mechanical;
-  const ImposedMotion motion(state.motion, position_input(p.drive, held.inputs), H, p.solver.hht_alpha);
+  const ImposedMotion motion(state.motion, position_input(p.drive, held.inputs), H);
   Boundary b0, b1;
   const auto boundary = [&](double tau, Boundary& b) {
     set_forces(held.inputs, tau, b);
@@ -181,6 +190,7 @@ Outputs Simulation::output_rates() const {
       d.contact_force = (to.contact_force - from.contact_force) / h;
       d.boundary.uplift = (b1.uplift - b0.uplift) / h;
       d.boundary.acceleration = (b1.acceleration - b0.acceleration) / h;
+      d.boundary.acceleration_change = (b1.acceleration_change - b0.acceleration_change) / h;
     };
     run(again, held_, quotient, failure);
   }
@@ -207,7 +217,8 @@ Outputs Simulation::outputs_change(const Inputs& direction) const {
   Signal& position = p.drive == Drive::Wire ? du.wire_height : du.head_displacement;
   const Signal& held_position = position_input(p.drive, held_.inputs);
   position.has_derivatives = held_position.has_derivatives;
-  const ImposedMotion motion(MotionState(), position, held_.length, p.solver.hht_alpha);
+  position.has_curvature = held_position.has_curvature;
+  const ImposedMotion motion(before_.motion.variation(), position, held_.length);
   const bool moves = p.drive == Drive::Displacement || p.drive == Drive::Wire;
 
   const auto boundary_change = [&](double tau) {
@@ -219,7 +230,12 @@ Outputs Simulation::outputs_change(const Inputs& direction) const {
   };
   MechanicalState d;
   Boundary db0 = boundary_change(0);
-  meet(db0, d);
+  meet_variation(db0, d);
+  if (p.drive == Drive::Displacement) {
+    Boundary b0;
+    ImposedMotion(before_.motion, held_position, held_.length).at(0, b0);
+    d.work = mechanics_.mass[U1] * b0.velocity * db0.velocity;
+  }
   double tau = 0;
   const auto linearized = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0, const Boundary& b1,
                               double h) {

@@ -67,6 +67,7 @@ class Simulation {
   bool cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin, double h,
              int halvings, OnStep& on_step, AdvanceFailure& failure) const;
   void meet(const Boundary& b0, MechanicalState& s) const;
+  void meet_variation(const Boundary& db0, MechanicalState& d) const;
 
   Mechanics mechanics_;
   Hht hht_;
@@ -83,7 +84,7 @@ void visit(SimulationState& s, Visitor&& f) {
 
 template <class Visitor>
 void visit(Signal& s, Visitor&& f) {
-  f(s.value), f(s.rate), f(s.curvature), f(s.has_derivatives);
+  f(s.value), f(s.rate), f(s.curvature), f(s.has_derivatives), f(s.has_curvature);
 }
 
 template <class Visitor>

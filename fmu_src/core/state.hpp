@@ -12,6 +12,9 @@ struct Boundary {
   double position = 0;                               // m, of the imposed head or the wire
   double velocity = 0;                               // m/s
   double acceleration = 0;                           // m/s2
+  // By how much the acceleration has probably changed since the communication point, m/s2: reported with it and
+  // with the reaction; the motion itself is the one that was told.
+  double acceleration_change = 0;
 };
 
 struct Statistics {
@@ -44,7 +47,7 @@ struct MechanicalState {
 
 template <class Visitor>
 void visit(Boundary& b, Visitor&& f) {
-  f(b.uplift), f(b.contact_force), f(b.position), f(b.velocity), f(b.acceleration);
+  f(b.uplift), f(b.contact_force), f(b.position), f(b.velocity), f(b.acceleration), f(b.acceleration_change);
 }
 
 template <class Visitor>

@@ -136,6 +136,7 @@ void Instance::set_input_derivatives(const fmi2ValueReference references[], size
     Signal& s = variables[references[i]].binding.input(inputs_);
     (orders[i] == 1 ? s.rate : s.curvature) = values[i];
     s.has_derivatives = true;
+    if (orders[i] == 2) s.has_curvature = true;
   }
 }
 
