@@ -10,12 +10,14 @@ struct Samples {
   double count = 0;
   double age[most] = {};    // s before the newest sample, ascending, age[0] = 0
   double value[most] = {};  // SI
+  double last_length = 0;   // s, of the last append
 
-  // `length` s after the last one. Samples much closer than the others, or much older, would not lie on a common
-  // polynomial of use: a close one replaces its neighbour, a late one begins anew with that neighbour.
+  // `length` s after the last one. Samples of very different distances are no help to each other: one that comes
+  // late begins anew with its neighbour, a single one that comes early replaces its neighbour.
   void append(double length, double x) {
     if (count >= 2 && length > 4 * age[1]) count = 1;
-    const int replaced = count >= 2 && length < age[1] / 16 ? 1 : 0;
+    const int replaced = count >= 2 && length < last_length / 16 ? 1 : 0;
+    last_length = length;
     const int kept = std::min(static_cast<int>(count) - replaced, most - 1);
     for (int i = kept; i > 0; --i) {
       age[i] = age[i - 1 + replaced] + length;
@@ -29,7 +31,7 @@ struct Samples {
 
 template <class Visitor>
 void visit(Samples& s, Visitor&& f) {
-  f(s.count);
+  f(s.count), f(s.last_length);
   for (double& x : s.age) f(x);
   for (double& x : s.value) f(x);
 }
