@@ -17,7 +17,7 @@ import numpy as np
 from core import probe_folder
 from tqdm import tqdm
 from zspring.fmu import Fmu, Instance
-from zspring.frf import FrfSettings, sweeps
+from zspring.frf.measure import FrfSettings, sweeps
 
 PERIODS = 30
 ROUNDS = 5

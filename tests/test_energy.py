@@ -78,6 +78,17 @@ def test_an_undamped_pantograph_keeps_its_energy(pantograph):
     assert np.ptp(stored - (history[:, 3] - history[0, 3])) < 1e-3 * stored.max()
 
 
+def test_the_trapezoidal_rule_keeps_the_energy_of_a_linear_pantograph_exactly(pantograph):
+    undamped = {"suspension": "LinearFree", "c3": 0.0, "solver.alpha": 0.0, "solver.tolerance": 1e-12}
+    p = pantograph(undamped)
+    p["uplift.lower_frame"] = 100.0
+    p.step(0.1)
+    p["uplift.lower_frame"] = 0.0
+    history = p.run(0.01, 500, BALANCE)
+    total = history[:, 0] + history[:, 1] - (history[:, 3] - history[0, 3])
+    assert np.ptp(total) < 1e-9 * (history[:, 0] + history[:, 1]).max()
+
+
 @pytest.mark.parametrize("friction", ["Regularized", "Coulomb"])
 @pytest.mark.parametrize("drive", INPUTS)
 def test_dissipated_energy_never_decreases(pantograph, drive, friction):

@@ -73,9 +73,9 @@ def differences(p: Pantograph, name: str, delta: float, size: float) -> np.ndarr
 @pytest.mark.parametrize("drive", DRIVES)
 def test_directional_derivatives_of_a_step_are_its_differences(pantograph, drive, friction, size):
     """Up to 25 internal steps in a step; for the drive's own input and for each uplift."""
-    p = in_motion(
-        pantograph, {"drive": drive, "friction": friction, "zspring.tau": 20.0, "bench.acceleration": 3.0}
-    )
+    dampers = {"c1": 10.0, "c2": 20.0, "contact.c": 50.0}
+    smooth = {"zspring.tau": 20.0, "bench.acceleration": 3.0}
+    p = in_motion(pantograph, dampers | smooth | {"drive": drive, "friction": friction})
     own, delta = DRIVES[drive]
     knowns = {own: delta} if own else {}
     knowns |= {"uplift.head": 1e-2, "uplift.upper_frame": 1e-2, "uplift.lower_frame": 1e-2}

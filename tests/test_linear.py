@@ -97,6 +97,27 @@ def test_dsa_380_has_its_natural_frequencies(pantograph, k1, natural, head_fixed
         np.testing.assert_allclose(found, expected, atol=1e-3)
 
 
+def test_hht_shifts_the_frequencies_of_dsa_380_as_much_as_its_theory_says(pantograph):
+    """At alpha = -0.3 and 2 ms by -0.08 % at 6.5 Hz and by -0.28 % at 12 Hz, with the square of the frequency.
+
+    In free vibration the samples follow x(t + T) = A x(t) + B x(t - T); the eigenvalues are exp(i omega T).
+    """
+    interval, masses = 0.02, ["head.z", "upper_frame.z", "lower_frame.z"]
+    p = pantograph(PRECISE | {"suspension": "Linear", "c3": 0.0})
+    p["uplift.lower_frame"] = 100.0
+    p.step(0.05)
+    p["uplift.lower_frame"] = 0.0
+    p.step(0.1)
+    x = p.run(interval, 60, masses)
+    a = np.linalg.lstsq(np.hstack([x[1:-1], x[:-2]]), x[2:], rcond=None)[0]
+    companion = np.vstack([a.T, np.eye(3, 6)])
+    found = np.angle(np.linalg.eigvals(companion)) / (2 * np.pi * interval)
+    for frequency, stated, shift in zip(published("DSA-380").frequencies()[1:], (6.5, 12.0), (-0.08, -0.28)):
+        nearest = found[np.argmin(np.abs(found - frequency))]
+        percent = 100 * (nearest / frequency - 1)
+        assert percent == pytest.approx(shift * (frequency / stated) ** 2, abs=0.006)
+
+
 @pytest.mark.parametrize(
     "frequency, stiffness, digit",
     [(4.11, 25630, 10), (6.54, 2435, 1), (11.76, 46610, 10), (12.38, 19490, 10)],

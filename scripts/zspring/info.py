@@ -1,13 +1,15 @@
-"""A table of the FMU's variables as text."""
+"""The command `zspring info`: a table of the FMU's variables as text."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 
+import click
 from fmpy.model_description import ScalarVariable
 
 from .errors import ZSpringError, did_you_mean
+from .options import fmu_option, opened
 from .variables import Variables, parse, text
 
 
@@ -49,3 +51,19 @@ def _bounds(variable: ScalarVariable) -> str:
     if variable.min is None and variable.max is None:
         return ""
     return f"{variable.min or '-inf'} .. {variable.max or 'inf'}"
+
+
+@click.command()
+@click.argument("names", nargs=-1, metavar="[NAME]...")
+@click.option("--path", "only_path", is_flag=True, help="Print only where the FMU is.")
+@fmu_option
+def info(names, only_path, fmu_path) -> None:
+    """List the FMU's variables, or those with these NAMEs (zspring.* for all that begin so).
+
+    `cp $(zspring info --path) .` copies the FMU for use in another tool.
+    """
+    with opened(fmu_path) as fmu:
+        if only_path:
+            print(fmu.path.absolute())
+            return
+        print(*variable_table(fmu.variables, names), sep="\n")

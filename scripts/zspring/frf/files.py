@@ -1,4 +1,4 @@
-"""Result files: CSV with the settings in its head and units in its column names."""
+"""Files of an FRF: the finished CSV, and the record of a measurement under way."""
 
 from __future__ import annotations
 
@@ -8,26 +8,11 @@ import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
-import numpy as np
-
-from .frf import FrfPoint, Sweep
-
-QUANTITIES = {"receptance": "m/N", "stiffness": "N/m"}
-
-
-def as_quantity(H: complex | np.ndarray, quantity: str) -> complex | np.ndarray:
-    """Receptance H in m/N, or dynamic stiffness 1/H in N/m."""
-    with np.errstate(invalid="ignore"):  # of NaN, a point that was left out
-        return H if quantity == "receptance" else 1 / H
-
-
-def phase_degrees(value: complex | np.ndarray, quantity: str) -> float | np.ndarray:
-    """Phase in degrees, cut far from where a driving point has it: -180 to 0 (receptance), 0 to 180."""
-    sign = -1 if quantity == "receptance" else 1
-    return sign * ((sign * np.degrees(np.angle(value)) + 90) % 360 - 90)
-
+from ..tables import read_table, write_head
+from .measure import FrfPoint, Sweep
+from .quantities import QUANTITIES, as_quantity, phase_degrees
 
 def frf_columns(quantity: str) -> list[str]:
     """Column names of an FRF file."""
@@ -89,25 +74,6 @@ def frf_point(row: Mapping[str, str]) -> FrfPoint:
         refinements=int(row["refinements"]),
         iterations_max=int(row["iterations_max"]),
     )
-
-
-def write_head(file: TextIO, head: Mapping[str, str], columns: Sequence[str]) -> None:
-    """Lines "# key: value", then the names of the columns."""
-    file.writelines(f"# {key}: {value}\n" for key, value in head.items())
-    csv.writer(file, lineterminator="\n").writerow(columns)
-
-
-def read_table(path: Path) -> tuple[dict[str, str], list[dict[str, str]]]:
-    """Head, and rows by column name, of a CSV file, without a last line that was not written to its end."""
-    head, lines = {}, []
-    with open(path, encoding="utf-8", newline="") as file:
-        for line in file:
-            if line.startswith("#"):
-                key, _, value = line[1:].partition(":")
-                head[key.strip()] = value.strip()
-            elif line.endswith("\n"):
-                lines.append(line)
-    return head, list(csv.DictReader(lines))
 
 
 class FrfRecord:

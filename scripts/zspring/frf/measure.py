@@ -15,9 +15,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .bench import FmuBench
-from .fmu import Fmu, StepDiscarded
+from ..fmu import Fmu, StepDiscarded
 from .input_bench import InputBench
-from .variables import Value
+from ..variables import Value
 
 Bench = FmuBench | InputBench
 BENCHES: dict[str, type[Bench]] = {"bench": FmuBench, "inputs": InputBench}

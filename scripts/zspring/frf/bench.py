@@ -6,8 +6,8 @@ import base64
 from collections.abc import Mapping
 from typing import Any
 
-from .fmu import Instance
-from .variables import Value
+from ..fmu import Instance
+from ..variables import Value
 
 
 class FmuBench:

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .errors import ZSpringError
-from .variables import Variables
+from ..errors import ZSpringError
+from ..variables import Variables
 
 TIME_UNITS = {"s": 1.0, "ms": 1e-3}
 

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from .fmu import Instance
-from .variables import Value
+from ..fmu import Instance
+from ..variables import Value
 
 FEWEST_STEPS_PER_PERIOD = 16
 

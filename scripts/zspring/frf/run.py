@@ -11,14 +11,15 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from . import frf_report as report
-from . import plots
-from .errors import ZSpringError
-from .fmu import Fmu
-from .frf import BENCHES, FAILED, FrfPoint, FrfSettings, left_out, measure, sweeps
-from .interrupt import Interrupted, stop_on_interrupt
-from .results import FrfRecord, write_frf
-from .variables import Value, text
+from ..errors import ZSpringError
+from ..figures import save
+from ..fmu import Fmu
+from ..interrupt import Interrupted, stop_on_interrupt
+from ..variables import Value, text
+from . import report
+from .files import FrfRecord, write_frf
+from .measure import BENCHES, FAILED, FrfPoint, FrfSettings, left_out, measure, sweeps
+from .plot import frf_figure
 
 MOST_DOUBTFUL_LINES = 10
 
@@ -59,10 +60,10 @@ def run_frf(
     write_frf(csv_path, head, results, quantity, errors)
     suspension = text(fmu.variables["suspension"], parameters["suspension"])
     bounds = report.linear_bounds(settings, parameters, linear=suspension == "Linear")
-    figure = plots.frf_figure(
+    figure = frf_figure(
         results, bounds, quantity, settings.stroke, report.title(fmu, settings, parameters)
     )
-    plots.save(figure, figure_path)
+    save(figure, figure_path)
     for record in records:
         record.path.unlink()
 

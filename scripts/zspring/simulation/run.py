@@ -10,13 +10,14 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from . import plots
-from .errors import ZSpringError
-from .fmu import Fmu, Instance
+from ..errors import ZSpringError
+from ..figures import save
+from ..fmu import Fmu, Instance
+from ..interrupt import Interrupted, stop_on_interrupt
+from ..tables import write_head
+from ..variables import Value, text, with_unit
 from .inputs import interpolate
-from .interrupt import Interrupted, stop_on_interrupt
-from .results import write_head
-from .variables import Value, text, with_unit
+from .plot import simulation_figure
 
 Inputs = tuple[np.ndarray, Mapping[str, np.ndarray]]  # time (n,) in s, values (n,) by name
 
@@ -83,7 +84,7 @@ def simulate(
         title += "; Z-spring parameters synthetic"
     columns = dict(zip(["time", *outputs], np.array(rows, dtype=float).T))
     figure_path = folder / f"simulation.{suffix}"
-    plots.save(plots.simulation_figure(columns, used["zspring.Mf"], title), figure_path)
+    save(simulation_figure(columns, used["zspring.Mf"], title), figure_path)
     print(f"{count} communication steps from {start_time:g} s to {stop_time:g} s")
     print(f"written: {path} {figure_path}")
 

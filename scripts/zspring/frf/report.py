@@ -7,11 +7,11 @@ from datetime import datetime, timezone
 
 import numpy as np
 
-from .fmu import Fmu
-from .frf import BENCH_PARAMETERS, FAILED, NOT_SETTLED, FrfPoint, FrfSettings
-from .receptance import receptance
+from ..fmu import Fmu
+from .measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, FrfPoint, FrfSettings
+from ..receptance import receptance
 from .resonances import extremes
-from .variables import Value, text, with_unit
+from ..variables import Value, text, with_unit
 
 Curve = tuple[np.ndarray, np.ndarray]  # frequency (n,) in Hz, receptance (n,) in m/N
 

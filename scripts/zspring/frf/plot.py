@@ -1,19 +1,18 @@
-"""Figures of results. Nothing is simulated here."""
+"""The figure of an FRF. Nothing is simulated here."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
-from .frf import LEFT_OUT, NOT_SETTLED, FrfPoint
-from .results import QUANTITIES, as_quantity, phase_degrees
+from ..figures import new_figure
+from .measure import LEFT_OUT, NOT_SETTLED, FrfPoint
+from .quantities import QUANTITIES, as_quantity, phase_degrees
 
 BOUND_STYLES = {"locked": "--", "free": ":", "linear": "-."}
 BOUND_LABELS = {
@@ -37,7 +36,7 @@ def frf_figure(
     quantity    "receptance" or "stiffness"
     stroke      in m, beyond which points were left out
     """
-    figure = _figure(8.5, 7.5)
+    figure = new_figure(8.5, 7.5)
     magnitude, phase = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
     for model, (frequency, H) in bounds.items():
         value = as_quantity(H, quantity)
@@ -91,54 +90,4 @@ def frf_figure(
     for axes in (magnitude, phase):
         axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
     phase.set_xlim(0, max(point.frequency for point in points))
-    return figure
-
-
-def simulation_figure(columns: Mapping[str, np.ndarray], friction_bound: float, title: str) -> Figure:
-    """Displacements, contact force, rod angles and friction moments over time.
-
-    columns         "time" and the FMU's outputs by name, each (n,), in the FMU's units
-    friction_bound  zspring.Mf in N.m
-    """
-    figure = _figure(9.5, 9)
-    panels = figure.subplots(4, 1, sharex=True)
-    time = columns["time"]
-    rows = (
-        (
-            "displacement  [mm]",
-            1e3,
-            {"head": "head.z", "upper frame": "upper_frame.z", "lower frame": "lower_frame.z"},
-        ),
-        ("contact force  [N]", 1.0, {"contact": "contact.force"}),
-        (
-            "rod angle  [deg]",
-            np.degrees(1.0),
-            {"α, head side": "zspring.alpha", "β, frame side": "zspring.beta"},
-        ),
-        ("friction moment  [N.m]", 1.0, {"α": "zspring.moment_alpha", "β": "zspring.moment_beta"}),
-    )
-    for axes, (label, factor, names) in zip(panels, rows):
-        for (text, name), style in zip(names.items(), ("-", "--", ":")):
-            axes.plot(time, factor * columns[name], style, linewidth=1.2, label=text)
-        axes.set_ylabel(label)
-        axes.grid(True, linewidth=0.4, alpha=0.5)
-        if len(names) > 1:
-            axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
-    for sign in (-1, 1):
-        panels[-1].axhline(sign * friction_bound, color="gray", linewidth=0.8, linestyle="--")
-    panels[0].set_title(title)
-    panels[-1].set_xlabel("time  [s]")
-    panels[-1].set_xlim(time[0], time[-1])
-    return figure
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write the figure in the format that the file's suffix names."""
-    figure.savefig(path, dpi=150)
-
-
-def _figure(width: float, height: float) -> Figure:
-    """An empty figure of that size in inches, independent of any display."""
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
     return figure

@@ -1,0 +1,20 @@
+"""What all figures share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write the figure in the format that the file's suffix names."""
+    figure.savefig(path, dpi=150)
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of that size in inches, independent of any display."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure

@@ -1,0 +1,1 @@
+"""First-order FRF by stepped sine with controlled response."""

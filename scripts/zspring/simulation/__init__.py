@@ -1,0 +1,1 @@
+"""Simulation of any drive with inputs from a file."""
