@@ -98,7 +98,7 @@ def test_dsa_380_has_its_natural_frequencies(pantograph, k1, natural, head_fixed
 
 
 def test_hht_shifts_the_frequencies_of_dsa_380_as_much_as_its_theory_says(pantograph):
-    """At alpha = -0.3 and 2 ms by -0.08 % at 6.5 Hz and by -0.28 % at 12 Hz, with the square of the frequency.
+    """At alpha = -0.3 and 2 ms by -0.08 % at 6.5 Hz and -0.28 % at 12 Hz, with the square of the frequency.
 
     In free vibration the samples follow x(t + T) = A x(t) + B x(t - T); the eigenvalues are exp(i omega T).
     """

@@ -35,7 +35,8 @@ double Ramp::curvature(double s) const {
 
 double Ramp::integral(double s) const {
   const double x = std::min(s / length, 1.0);
-  const double ramp = length * x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3 + x * (c[3] / 4 + x * (c[4] / 5 + x * c[5] / 6)))));
+  const double ramp =
+      length * x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3 + x * (c[3] / 4 + x * (c[4] / 5 + x * c[5] / 6)))));
   return ramp + (s > length ? (s - length) * value(length) : 0);
 }
 

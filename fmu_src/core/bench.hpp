@@ -2,9 +2,9 @@
 //
 // Displacement X sin(phase), X = acceleration / (2 pi f)^2. A change of frequency or acceleration starts a ramp
 // that leads amplitude and frequency to their new values with continuous phase, position, velocity and
-// acceleration, over about one period of the slower of the two, a whole number of the new ones; from then on whole periods are counted. The grid has a
-// whole number of equal steps in each period, so that the trapezoidal rule over a period is exact for every
-// harmonic that it resolves.
+// acceleration, over about one period of the slower of the two, a whole number of the new ones; from then on whole
+// periods are counted. The grid has a whole number of equal steps in each period, so that the trapezoidal rule
+// over a period is exact for every harmonic that it resolves.
 //
 // H = -Z/F with Z, F the components of head displacement and contact force at f: minus because a positive
 // contact force pushes down, so that the static phase is 0.
@@ -34,9 +34,9 @@ struct BenchState {
   double phase = 0;                        // rad, where the ramp began
   double steps_per_period = 0;
   double ramp_steps = 0;
-  double node = 0;      // grid steps done since the ramp began
-  double offset = 0;    // s beyond that node, where a communication point cut a step
-  double carry = 0;     // s, rounding left over by the last communication step
+  double node = 0;                  // grid steps done since the ramp began
+  double offset = 0;                // s beyond that node, where a communication point cut a step
+  double carry = 0;                 // s, rounding left over by the last communication step
   double sin_sum = 0, cos_sum = 0;  // N, of the running period
   double periods = 0;
   double H_re = 0, H_im = 0;  // m/N
@@ -68,16 +68,16 @@ class Bench {
 
   // Start a new programme if frequency (Hz) or acceleration (m/s2) differ from the running one.
   void tune(double frequency, double acceleration, double largest_step);
-  double grid_step() const;                       // s
-  double to_next_node() const;                    // s
-  Phasor motion(double tau, Boundary& b) const;   // tau s from now
+  double grid_step() const;                      // s
+  double to_next_node() const;                   // s
+  Phasor motion(double tau, Boundary& b) const;  // tau s from now
   // Move on by h s, a step that ends at the next node if `reaches_node`; phases and forces (N, less the static
   // one) at its begin and end.
   void advance(double h, bool reaches_node, Phasor begin, double force_begin, Phasor end, double force_end);
 
  private:
-  double elapsed() const;            // s since the ramp began
-  double phase_at(double s) const;   // rad
+  double elapsed() const;           // s since the ramp began
+  double phase_at(double s) const;  // rad
   void finish_period();
 
   BenchState& b_;

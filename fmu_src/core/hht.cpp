@@ -6,9 +6,6 @@
 namespace zspring {
 namespace {
 
-constexpr int joint_dof[] = {ALPHA, BETA};
-constexpr int mass_dof[] = {U1, U2, U3};
-
 // Gauss elimination without pivoting. It needs none: the matrix is that of a positive definite one with its
 // rod columns scaled by dw/dz >= 0 and ds/dz >= 0 added to their diagonal, so every pivot is positive. One that
 // is not tells that the step is too large for the stiffness met, and the caller halves it.
@@ -68,7 +65,8 @@ double Hht::head_force(const Boundary& b, double u, double v, bool& closed) cons
   return closed ? force : 0;
 }
 
-bool Hht::evaluate(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b1, bool direct, Trial& t) const {
+bool Hht::evaluate(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b1, bool direct,
+                   Trial& t) const {
   const Parameters& p = m_.parameters;
   for (int i : mass_dof) {
     t.a[i] = t.x[i];
@@ -104,7 +102,7 @@ bool Hht::evaluate(const HhtCoefficients& c, const MechanicalState& from, const 
   }
   if (!m_.springs(t.q, t.internal, t.head_tangent)) return false;
   t.internal += m_.damping_force(t.v);
-  for (int j = 0; j < 2; ++j) t.internal[joint_dof[j]] += m_.moment_bound[j] * t.s[j];
+  joints(t.internal) += m_.moment_bound.cwiseProduct(t.s);
   t.contact_force = head_imposed() ? 0 : head_force(b1, t.q[U1], t.v[U1], t.closed);
   return true;
 }
@@ -119,7 +117,8 @@ bool Hht::solve(const HhtCoefficients& c, const Trial& t, Vector5& r) const {
   A.col(2) = c.weight * t.angle_slope[1] * t.head_tangent.col(2);
   A.col(3) = bw * t.head_tangent.col(3);
   for (int j = 0; j < 2; ++j)
-    A(j + 1, j + 1) += m_.mass[j + 1] * t.acceleration_slope[j] + c.weight * m_.moment_bound[j] * t.moment_slope[j];
+    A(j + 1, j + 1) +=
+        m_.mass[j + 1] * t.acceleration_slope[j] + c.weight * m_.moment_bound[j] * t.moment_slope[j];
   A(0, 0) += m_.mass[U1] + gw * p.c1;
   A(0, 3) -= gw * p.c1;
   A(3, 0) -= gw * p.c1;
@@ -148,15 +147,14 @@ double Hht::reaction(const Boundary& b, const Vector5& internal) const {
 }
 
 Vector5 Hht::push(const Boundary& b, double contact_force) const {
-  Vector5 f;
-  f << b.uplift[0] - contact_force, 0, 0, b.uplift[1], b.uplift[2];
+  Vector5 f = on_masses(b.uplift);
+  f[U1] -= contact_force;
   if (head_imposed()) f[U1] -= m_.mass[U1] * b.acceleration_change;
   return f;
 }
 
 Vector5 Hht::old_load(const MechanicalState& from, const Boundary& b0) const {
-  Vector5 R = from.internal;
-  for (int k = 0; k < 3; ++k) R[mass_dof[k]] -= b0.uplift[k];
+  Vector5 R = from.internal - on_masses(b0.uplift);
   if (!head_imposed()) {
     bool closed;
     R[U1] += head_force(b0, from.q[U1], from.v[U1], closed);
@@ -181,13 +179,13 @@ bool Hht::step(const MechanicalState& from, const Boundary& b0, const Boundary& 
   const SolverParameters& solver = m_.parameters.solver;
   const bool direct = m_.law == FrictionLaw::Tanh && solver.tangent != Tangent::Resolvent;
   const Vector5 R0 = old_load(from, b0);
+  const Vector5 uplift = on_masses(b1.uplift);
   const Vector5 allowed = solver.tolerance * residual_scale(from);
 
   Trial t;
   t.x = from.a;
   t.v = from.v;
-  if (!direct)
-    for (int j = 0; j < 2; ++j) t.x[joint_dof[j]] = c.rho[j] * from.v[joint_dof[j]] + from.s[j];
+  if (!direct) joints(t.x) = c.rho.cwiseProduct(joints(from.v)) + from.s;
 
   to.statistics = from.statistics;
   failure.residual = HUGE_VAL;
@@ -196,8 +194,7 @@ bool Hht::step(const MechanicalState& from, const Boundary& b0, const Boundary& 
   bool converged = false, small_change = false;
   for (;; ++iteration) {
     if (!evaluate(c, from, b1, direct, t)) break;
-    Vector5 r = m_.mass.cwiseProduct(t.a) + c.weight * t.internal - c.alpha * R0;
-    for (int k = 0; k < 3; ++k) r[mass_dof[k]] -= c.weight * b1.uplift[k];
+    Vector5 r = m_.mass.cwiseProduct(t.a) + c.weight * (t.internal - uplift) - c.alpha * R0;
     if (head_imposed())
       r[U1] = 0;
     else
@@ -209,7 +206,7 @@ bool Hht::step(const MechanicalState& from, const Boundary& b0, const Boundary& 
     if (converged || iteration == solver.max_iterations || !solve(c, t, r)) break;
     t.x -= r;
     Vector5 change = c.beta_h2 * r;
-    for (int j = 0; j < 2; ++j) change[joint_dof[j]] = t.angle_slope[j] * r[joint_dof[j]];
+    joints(change) = t.angle_slope.cwiseProduct(joints(r));
     small_change = change.norm() <= solver.tolerance * (1 + t.q.norm());
   }
   failure.iterations = iteration;
@@ -223,8 +220,8 @@ void Hht::prepare(double h, double h_last, MechanicalState& s) const {
   if (h_last > 0) s.a += m_.parameters.solver.hht_alpha * (h - h_last) * s.a_slope;
 }
 
-void Hht::accept(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b0, const Boundary& b1, const Trial& t,
-                 MechanicalState& to) const {
+void Hht::accept(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b0, const Boundary& b1,
+                 const Trial& t, MechanicalState& to) const {
   to.q = t.q;
   to.v = t.v;
   to.a = t.a;
@@ -239,7 +236,7 @@ void Hht::accept(const HhtCoefficients& c, const MechanicalState& from, const Bo
   to.boundary = b1;
 
   to.loss_power = m_.damping_power(t.v);
-  for (int j = 0; j < 2; ++j) to.loss_power += m_.moment_bound[j] * t.s[j] * t.v[joint_dof[j]];
+  to.loss_power += m_.moment_bound.cwiseProduct(t.s).dot(joints(t.v));
   to.dissipated = from.dissipated + 0.5 * c.h * (from.loss_power + to.loss_power);
   const Vector5 mean_push = m_.preload + 0.5 * (push(b0, from.contact_force) + push(b1, to.contact_force));
   to.work = from.work + mean_push.dot(to.q - from.q);

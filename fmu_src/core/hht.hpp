@@ -19,11 +19,11 @@ namespace zspring {
 struct HhtCoefficients {
   HhtCoefficients(const Mechanics& m, double step);
 
-  double h;                      // s
-  double beta_h2, gamma_h;       // s2, s
+  double h;                           // s
+  double beta_h2, gamma_h;            // s2, s
   double old_position, old_velocity;  // (1/2 - beta) h^2, (1 - gamma) h
-  double alpha, weight;          // hht_alpha, 1 + hht_alpha
-  Vector2 rho;                   // s/rad
+  double alpha, weight;               // hht_alpha, 1 + hht_alpha
+  Vector2 rho;                        // s/rad
 };
 
 // One iterate: the unknowns and what follows from them.
@@ -51,28 +51,31 @@ class Hht {
   // Moves HHT's acceleration to where a step of h s expects it; linear, so that it serves variations as well.
   void prepare(double h, double h_last, MechanicalState& s) const;
 
-  // From `from`, prepared, under the boundary `b0` to `to` under `b1`; `to` keeps from's statistics plus this attempt's.
-  // False, with `failure` filled and `to` without meaning, when Newton does not converge.
+  // From `from`, prepared, under the boundary `b0` to `to` under `b1`; `to` keeps from's statistics plus this
+  // attempt's. False, with `failure` filled and `to` without meaning, when Newton does not converge.
   bool step(const MechanicalState& from, const Boundary& b0, const Boundary& b1, double h, MechanicalState& to,
             StepFailure& failure) const;
 
   // The parts that the linearised step shares. `direct`: the unknown of a joint is its acceleration, not z.
-  bool head_imposed() const { return m_.parameters.drive == Drive::Displacement || m_.parameters.drive == Drive::Bench; }
+  bool head_imposed() const {
+    return m_.parameters.drive == Drive::Displacement || m_.parameters.drive == Drive::Bench;
+  }
   double head_force(const Boundary& b, double u, double v, bool& closed) const;  // N, Force and Wire
   // N, of an imposed motion, from the balance at this instant itself, where the acceleration is known to second
   // order; HHT's weighted balance would give the force of an earlier instant. Linear.
   double reaction(const Boundary& b, const Vector5& internal) const;
-  // What does work on the pantograph at one instant, N, on all degrees of freedom. Without the preload, so that it is linear.
+  // What does work on the pantograph at one instant, N, without the preload and so linear.
   Vector5 push(const Boundary& b, double contact_force) const;
-  bool evaluate(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b1, bool direct, Trial& t) const;
+  bool evaluate(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b1, bool direct,
+                Trial& t) const;
   bool solve(const HhtCoefficients& c, const Trial& t, Vector5& residual) const;  // residual -> J^-1 residual
   const Mechanics& mechanics() const { return m_; }
 
  private:
   Vector5 old_load(const MechanicalState& from, const Boundary& b0) const;
   Vector5 residual_scale(const MechanicalState& from) const;
-  void accept(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b0, const Boundary& b1, const Trial& t,
-              MechanicalState& to) const;
+  void accept(const HhtCoefficients& c, const MechanicalState& from, const Boundary& b0, const Boundary& b1,
+              const Trial& t, MechanicalState& to) const;
 
   const Mechanics& m_;
 };

@@ -4,10 +4,10 @@
 // of the step, so that it never jumps. Velocity and acceleration at communication points are those of the
 // polynomial through the last five.
 //
-// With derivatives the position follows value + rate tau + curvature tau^2/2; what separates the begin of that from
-// where the position was is closed in a straight line. Velocity and acceleration follow it where the curvature is
-// given. That belongs to the begin of the step: for the acceleration and the reaction that are reported at its end
-// it is continued from its last three values, else they would be those of one step earlier.
+// With derivatives the position follows value + rate tau + curvature tau^2/2; what separates the begin of that
+// from where the position was is closed in a straight line. Velocity and acceleration follow it where the
+// curvature is given. That belongs to the begin of the step: for the acceleration and the reaction that are
+// reported at its end it is continued from its last three values, else they would be those of one step earlier.
 #pragma once
 
 #include "parameters.hpp"

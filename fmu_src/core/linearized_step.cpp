@@ -3,9 +3,6 @@
 namespace zspring {
 namespace {
 
-constexpr int joint_dof[] = {ALPHA, BETA};
-constexpr int mass_dof[] = {U1, U2, U3};
-
 double head_force_change(const Parameters& p, bool closed, const Boundary& db, double du, double dv) {
   if (p.drive == Drive::Force) return db.contact_force;
   return closed ? p.contact_k * (du - db.position) + p.contact_c * (dv - db.velocity) : 0;
@@ -13,9 +10,9 @@ double head_force_change(const Parameters& p, bool closed, const Boundary& db, d
 
 }  // namespace
 
-MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, const Boundary& b0, const Boundary& b1, double h,
-                                const MechanicalState& to, const MechanicalState& dfrom, const Boundary& db0,
-                                const Boundary& db1) {
+MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, const Boundary& b0,
+                                const Boundary& b1, double h, const MechanicalState& to,
+                                const MechanicalState& dfrom, const Boundary& db0, const Boundary& db1) {
   const Mechanics& m = hht.mechanics();
   const Parameters& p = m.parameters;
   const HhtCoefficients c(m, h);
@@ -24,7 +21,7 @@ MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, con
   Trial t;
   t.x = to.a;
   t.v = to.v;
-  for (int j = 0; j < 2; ++j) t.x[joint_dof[j]] = c.rho[j] * to.v[joint_dof[j]] + to.s[j];
+  joints(t.x) = c.rho.cwiseProduct(joints(to.v)) + to.s;
   hht.evaluate(c, from, b1, false, t);
 
   // With the unknowns held: the part of the variation that the old state brings.
@@ -43,12 +40,8 @@ MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, con
     d.a[U1] = db1.acceleration;
   }
 
-  Vector5 old = dfrom.internal;
-  Vector5 now = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v);
-  for (int k = 0; k < 3; ++k) {
-    old[mass_dof[k]] -= db0.uplift[k];
-    now[mass_dof[k]] -= db1.uplift[k];
-  }
+  Vector5 old = dfrom.internal - on_masses(db0.uplift);
+  Vector5 now = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v) - on_masses(db1.uplift);
   if (!imposed) {
     bool closed;
     hht.head_force(b0, from.q[U1], from.v[U1], closed);
@@ -76,14 +69,13 @@ MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, con
   for (int j = 0; j < 2; ++j)
     if (t.angle_slope[j] == 0) d.a[joint_dof[j]] = d.a_slope[joint_dof[j]] = 0;
   d.internal = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v);
-  for (int j = 0; j < 2; ++j) d.internal[joint_dof[j]] += m.moment_bound[j] * d.s[j];
+  joints(d.internal) += m.moment_bound.cwiseProduct(d.s);
   d.contact_force =
       imposed ? hht.reaction(db1, d.internal) : head_force_change(p, t.closed, db1, d.q[U1], d.v[U1]);
   d.boundary = db1;
 
   d.loss_power = 2 * to.v.dot(m.damping_force(d.v));
-  for (int j = 0; j < 2; ++j)
-    d.loss_power += m.moment_bound[j] * (d.s[j] * to.v[joint_dof[j]] + to.s[j] * d.v[joint_dof[j]]);
+  d.loss_power += m.moment_bound.dot(d.s.cwiseProduct(joints(to.v)) + to.s.cwiseProduct(joints(d.v)));
   d.dissipated = dfrom.dissipated + 0.5 * h * (dfrom.loss_power + d.loss_power);
   const Vector5 mean_push = m.preload + 0.5 * (hht.push(b0, from.contact_force) + hht.push(b1, to.contact_force));
   const Vector5 d_push = 0.5 * (hht.push(db0, dfrom.contact_force) + hht.push(db1, d.contact_force));

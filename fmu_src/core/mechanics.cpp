@@ -35,7 +35,8 @@ Mechanics::Mechanics(const Parameters& p) : parameters(p), law(friction_law(p)) 
   if (law == FrictionLaw::Coulomb && p.solver.tangent != Tangent::Resolvent)
     throw ParameterError("solver.tangent: with friction Coulomb only Resolvent is allowed, the law has no slope");
   if (!(p.m3 + p.c2 + p.c3 + p.k2 + p.k3 > 0))
-    throw ParameterError("m3 = 0 kg: must be more than 0 where c2, c3, k2 and k3 are all 0, nothing holds the lower frame");
+    throw ParameterError(
+        "m3 = 0 kg: must be more than 0 where c2, c3, k2 and k3 are all 0, nothing holds the lower frame");
 
   moment_bound.setConstant(bounded ? p.zspring.Mf : 1);
   mass << p.m1, p.zspring.J1, p.zspring.J2, p.m2, p.m3;
@@ -54,7 +55,9 @@ Mechanics::Mechanics(const Parameters& p) : parameters(p), law(friction_law(p)) 
   ElementResponse at_rest;
   if (!zspring_response(p.zspring, static_.theta, static_.theta, static_.gap, at_rest)) {
     char text[120];
-    std::snprintf(text, sizeof text, "zspring.l0 = %g m: the spring has no length in the static state; enlarge l0 or d", p.zspring.l0);
+    std::snprintf(text, sizeof text,
+                  "zspring.l0 = %g m: the spring has no length in the static state; enlarge l0 or d",
+                  p.zspring.l0);
     throw ParameterError(text);
   }
   // Taken from the same code as in motion, so that the state of rest is balanced to the last bit.

@@ -21,7 +21,21 @@ using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
 enum Dof { U1, ALPHA, BETA, U2, U3 };
 
-constexpr const char* dof_name[] = {"head", "rod alpha", "rod beta", "upper frame", "lower frame"};
+inline constexpr int mass_dof[] = {U1, U2, U3};
+inline constexpr int joint_dof[] = {ALPHA, BETA};
+
+// Those of the two joints in a vector of all degrees of freedom, and forces on the three masses as such a vector.
+template <class Vector>
+auto joints(Vector& x) {
+  return x.template segment<2>(ALPHA);
+}
+inline Vector5 on_masses(const Eigen::Vector3d& f) {
+  Vector5 x;
+  x << f[0], 0, 0, f[1], f[2];
+  return x;
+}
+
+inline constexpr const char* dof_name[] = {"head", "rod alpha", "rod beta", "upper frame", "lower frame"};
 
 class Mechanics {
  public:
@@ -47,9 +61,9 @@ class Mechanics {
   Vector2 moment_bound;  // N m, scale of s = moment / bound; 1 where the law knows no bound
   Vector5 mass;
   Vector5 preload;
-  Vector5 rest;             // static q: 0 but for the angles
-  Matrix4 static_tangent;   // head suspension at rest
-  double load;              // N, m1 gravity + static_force
+  Vector5 rest;            // static q: 0 but for the angles
+  Matrix4 static_tangent;  // head suspension at rest
+  double load;             // N, m1 gravity + static_force
 
  private:
   bool head_response(const Vector5& q, ElementResponse& out) const;

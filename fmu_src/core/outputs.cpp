@@ -4,10 +4,8 @@ namespace zspring {
 namespace {
 
 Vector5 unbalanced_force(const MechanicalState& s) {
-  Vector5 f = -s.internal;
-  f[U1] += s.boundary.uplift[0] - s.contact_force;
-  f[U2] += s.boundary.uplift[1];
-  f[U3] += s.boundary.uplift[2];
+  Vector5 f = on_masses(s.boundary.uplift) - s.internal;
+  f[U1] -= s.contact_force;
   return f;
 }
 

@@ -41,10 +41,10 @@ struct Parameters {
   double c1, c2, c3;  // N s/m
   double k1, k2, k3;  // N/m; k1 for Suspension::Linear only
   ZSpringParameters zspring;
-  double static_force;  // N
-  double gravity;       // m/s2
-  double contact_k;     // N/m, Drive::Wire
-  double contact_c;     // N s/m, Drive::Wire
+  double static_force;        // N
+  double gravity;             // m/s2
+  double contact_k;           // N/m, Drive::Wire
+  double contact_c;           // N s/m, Drive::Wire
   double bench_frequency;     // Hz, Drive::Bench
   double bench_acceleration;  // m/s2, peak
   SolverParameters solver;

@@ -9,9 +9,8 @@
 namespace zspring {
 namespace {
 
-constexpr int most_halvings = 10;         // to 1/1024 of the internal step
+constexpr int most_halvings = 10;          // to 1/1024 of the internal step
 constexpr double rounding_of_time = 1e-6;  // of an internal step: hosts add up their communication points
-constexpr int mass_dof[] = {U1, U2, U3};
 
 void set_forces(const Inputs& u, double tau, Boundary& b) {
   for (int k = 0; k < 3; ++k) b.uplift[k] = u.uplift[k].at(tau);
@@ -24,7 +23,8 @@ const Signal& position_input(Drive drive, const Inputs& u) {
 
 }  // namespace
 
-Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : mechanics_(parameters), hht_(mechanics_) {
+Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
+    : mechanics_(parameters), hht_(mechanics_) {
   state_.mechanical = at_rest(inputs);
   state_.motion.position = state_.mechanical.boundary.position;
   before_ = state_;
@@ -77,8 +77,8 @@ void Simulation::meet_variation(const Boundary& b0, MechanicalState& s) const {
 }
 
 template <class BoundaryAt, class OnStep>
-bool Simulation::cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin,
-                       double h, int halvings, OnStep& on_step, AdvanceFailure& failure) const {
+bool Simulation::cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1,
+                       double begin, double h, int halvings, OnStep& on_step, AdvanceFailure& failure) const {
   MechanicalState next;
   const double h_last = s.h;
   hht_.prepare(h, h_last, s);
@@ -105,7 +105,8 @@ bool Simulation::run(SimulationState& state, const Held& held, OnStep&& on_step,
 }
 
 template <class OnStep>
-bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_step, AdvanceFailure& failure) const {
+bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_step,
+                           AdvanceFailure& failure) const {
   const Parameters& p = mechanics_.parameters;
   MechanicalState& s = state.mechanical;
   Bench bench(state.bench);
@@ -143,7 +144,8 @@ bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_
 }
 
 template <class OnStep>
-bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on_step, AdvanceFailure& failure) const {
+bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on_step,
+                            AdvanceFailure& failure) const {
   const Parameters& p = mechanics_.parameters;
   const double H = held.length;
   MechanicalState& s = state.mechanical;
@@ -167,7 +169,8 @@ bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on
 
 bool Simulation::advance(const Held& held, AdvanceFailure& failure) {
   const SimulationState begin = state_;
-  const auto nothing = [](const MechanicalState&, const MechanicalState&, const Boundary&, const Boundary&, double) {};
+  const auto nothing = [](const MechanicalState&, const MechanicalState&, const Boundary&, const Boundary&,
+                          double) {};
   if (!run(state_, held, nothing, failure)) {
     state_ = begin;
     return false;
@@ -183,8 +186,8 @@ Outputs Simulation::output_rates() const {
   if (held_.length > 0) {
     SimulationState again = before_;
     AdvanceFailure failure;
-    const auto quotient = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0, const Boundary& b1,
-                              double h) {
+    const auto quotient = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0,
+                              const Boundary& b1, double h) {
       d.internal = (to.internal - from.internal) / h;
       d.s = (to.s - from.s) / h;
       d.contact_force = (to.contact_force - from.contact_force) / h;
@@ -237,8 +240,8 @@ Outputs Simulation::outputs_change(const Inputs& direction) const {
     d.work = mechanics_.mass[U1] * b0.velocity * db0.velocity;
   }
   double tau = 0;
-  const auto linearized = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0, const Boundary& b1,
-                              double h) {
+  const auto linearized = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0,
+                              const Boundary& b1, double h) {
     tau += h;
     hht_.prepare(h, from.h, d);
     const Boundary db1 = boundary_change(tau);
@@ -255,18 +258,22 @@ const char* Simulation::describe_imbalance(char* text, int size) const {
   const Parameters& p = mechanics_.parameters;
   const Inputs& u = held_.inputs;
   const auto describe = [&](const char* name, double value, const char* unit, double balanced) {
-    std::snprintf(text, static_cast<size_t>(size), "%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
-                  name, value, unit, balanced, unit);
+    std::snprintf(
+        text, static_cast<size_t>(size),
+        "%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
+        name, value, unit, balanced, unit);
     return text;
   };
   if (p.drive == Drive::Force && u.contact_force.value != p.static_force)
     return describe("contact_force", u.contact_force.value, "N", p.static_force);
   if (p.drive == Drive::Displacement && u.head_displacement.value != 0)
     return describe("head_displacement", u.head_displacement.value, "m", 0);
-  if (p.drive == Drive::Wire && u.wire_height.value != 0) return describe("wire_height", u.wire_height.value, "m", 0);
+  if (p.drive == Drive::Wire && u.wire_height.value != 0)
+    return describe("wire_height", u.wire_height.value, "m", 0);
   const char* names[] = {"uplift.head", "uplift.upper_frame", "uplift.lower_frame"};
   for (int k = 0; k < 3; ++k)
-    if (u.uplift[k].value != 0 && !(k == 0 && hht_.head_imposed())) return describe(names[k], u.uplift[k].value, "N", 0);
+    if (u.uplift[k].value != 0 && !(k == 0 && hht_.head_imposed()))
+      return describe(names[k], u.uplift[k].value, "N", 0);
   return nullptr;
 }
 

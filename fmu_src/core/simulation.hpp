@@ -64,8 +64,8 @@ class Simulation {
   bool run_inputs(SimulationState& state, const Held& held, OnStep& on_step, AdvanceFailure& failure) const;
   // One internal step, halved as often as it takes.
   template <class BoundaryAt, class OnStep>
-  bool cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin, double h,
-             int halvings, OnStep& on_step, AdvanceFailure& failure) const;
+  bool cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin,
+             double h, int halvings, OnStep& on_step, AdvanceFailure& failure) const;
   void meet(const Boundary& b0, MechanicalState& s) const;
   void meet_variation(const Boundary& db0, MechanicalState& d) const;
 

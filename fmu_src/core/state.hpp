@@ -52,7 +52,8 @@ void visit(Boundary& b, Visitor&& f) {
 
 template <class Visitor>
 void visit(MechanicalState& s, Visitor&& f) {
-  f(s.q), f(s.v), f(s.a), f(s.a_slope), f(s.h), f(s.internal), f(s.s), f(s.contact_force), f(s.dissipated), f(s.work), f(s.loss_power);
+  f(s.q), f(s.v), f(s.a), f(s.a_slope), f(s.h), f(s.internal), f(s.s), f(s.contact_force), f(s.dissipated),
+      f(s.work), f(s.loss_power);
   visit(s.boundary, f);
   f(s.statistics.iterations), f(s.statistics.iterations_max), f(s.statistics.steps), f(s.statistics.refinements);
 }

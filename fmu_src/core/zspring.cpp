@@ -71,11 +71,12 @@ StaticState zspring_static_state(const ZSpringParameters& z, double load) {
   const double T = tension(t);
   if (!(high < steepest) || !(T > 0)) {
     char text[320];
-    std::snprintf(text, sizeof text,
-                  "zspring.d = %g m, zspring.k = %g N/m: no static state with the spring in tension under the load "
-                  "m1 gravity + static_force = %g N; allowed: d above L1 + L2 + l0 = %g m or a larger load, and k "
-                  "stiff enough to carry it",
-                  z.d, z.k, load, z.L1 + z.L2 + z.l0);
+    std::snprintf(
+        text, sizeof text,
+        "zspring.d = %g m, zspring.k = %g N/m: no static state with the spring in tension under the load "
+        "m1 gravity + static_force = %g N; allowed: d above L1 + L2 + l0 = %g m or a larger load, and k "
+        "stiff enough to carry it",
+        z.d, z.k, load, z.L1 + z.L2 + z.l0);
     throw ParameterError(text);
   }
   StaticState out;

@@ -32,34 +32,34 @@ void assign(Enum& member, double x) {
 template <unsigned reference>
 Binding bind() = delete;  // see above
 
-#define PARAMETER(id, member)                                                         \
-  template <>                                                                         \
-  constexpr Binding bind<vr::id>() {                                                  \
-    Binding b;                                                                        \
-    b.parameter = [](const Parameters& p) { return static_cast<double>(p.member); };  \
-    b.set_parameter = [](Parameters& p, double x) { assign(p.member, x); };           \
-    return b;                                                                         \
+#define PARAMETER(id, member)                                                        \
+  template <>                                                                        \
+  constexpr Binding bind<vr::id>() {                                                 \
+    Binding b;                                                                       \
+    b.parameter = [](const Parameters& p) { return static_cast<double>(p.member); }; \
+    b.set_parameter = [](Parameters& p, double x) { assign(p.member, x); };          \
+    return b;                                                                        \
   }
-#define CALCULATED(id, member)                                           \
-  template <>                                                            \
-  constexpr Binding bind<vr::id>() {                                     \
-    Binding b;                                                           \
-    b.calculated = [](const StaticStiffness& s) { return s.member; };    \
-    return b;                                                            \
+#define CALCULATED(id, member)                                        \
+  template <>                                                         \
+  constexpr Binding bind<vr::id>() {                                  \
+    Binding b;                                                        \
+    b.calculated = [](const StaticStiffness& s) { return s.member; }; \
+    return b;                                                         \
   }
-#define INPUT(id, member)                                            \
-  template <>                                                        \
-  constexpr Binding bind<vr::id>() {                                 \
-    Binding b;                                                       \
-    b.input = [](Inputs& u) -> Signal& { return u.member; };         \
-    return b;                                                        \
+#define INPUT(id, member)                                    \
+  template <>                                                \
+  constexpr Binding bind<vr::id>() {                         \
+    Binding b;                                               \
+    b.input = [](Inputs& u) -> Signal& { return u.member; }; \
+    return b;                                                \
   }
-#define OUTPUT(id, member)                                     \
-  template <>                                                  \
-  constexpr Binding bind<vr::id>() {                           \
-    Binding b;                                                 \
-    b.output = [](const Outputs& y) { return y.member; };      \
-    return b;                                                  \
+#define OUTPUT(id, member)                                \
+  template <>                                             \
+  constexpr Binding bind<vr::id>() {                      \
+    Binding b;                                            \
+    b.output = [](const Outputs& y) { return y.member; }; \
+    return b;                                             \
   }
 
 PARAMETER(drive, drive)

@@ -1,11 +1,10 @@
 // The C API of FMI 2.0 for co-simulation: each function checks what the standard asks for, calls the instance and
 // maps what was thrown to a status. No exception crosses this boundary and there is no global state.
-#include "fmi2Functions.h"
-
 #include <cstring>
 #include <memory>
 #include <new>
 
+#include "fmi2Functions.h"
 #include "instance.hpp"
 #include "serialization.hpp"
 
@@ -75,7 +74,8 @@ void need(const void* pointer, size_t n, const char* name) {
 }
 
 template <class Value>
-fmi2Status get_values(fmi2Component c, const char* function, Type type, const fmi2ValueReference vr[], size_t n, Value values[]) {
+fmi2Status get_values(fmi2Component c, const char* function, Type type, const fmi2ValueReference vr[], size_t n,
+                      Value values[]) {
   return guarded(c, readable, function, [&](Instance& i) {
     need(vr, n, "vr"), need(values, n, "value");
     for (size_t k = 0; k < n; ++k) values[k] = static_cast<Value>(i.get(vr[k], type));
@@ -108,7 +108,8 @@ fmi2Status no_strings(fmi2Component c, unsigned allowed, const char* function, s
 // Only asynchronous steps have a pending status; these never run.
 fmi2Status no_status(fmi2Component c, const char* function) {
   return guarded(c, after_step, function, [&](Instance& i) {
-    i.log.write(fmi2Discard, Category::logStatusDiscard, "this status is not available: steps are never asynchronous");
+    i.log.write(fmi2Discard, Category::logStatusDiscard,
+                "this status is not available: steps are never asynchronous");
     return fmi2Discard;
   });
 }
@@ -149,8 +150,8 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 
 void fmi2FreeInstance(fmi2Component c) { delete static_cast<Instance*>(c); }
 
-fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean /*tolerance_defined*/, fmi2Real /*tolerance*/, fmi2Real start,
-                               fmi2Boolean has_stop, fmi2Real stop) {
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean /*tolerance_defined*/, fmi2Real /*tolerance*/,
+                               fmi2Real start, fmi2Boolean has_stop, fmi2Real stop) {
   return guarded(c, Instantiated, "fmi2SetupExperiment", [&](Instance& i) {
     i.setup_experiment({start, has_stop ? stop : 0, has_stop != fmi2False});
     return fmi2OK;
@@ -270,8 +271,8 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,
-                                        const fmi2ValueReference known[], size_t n_known, const fmi2Real known_change[],
-                                        fmi2Real unknown_change[]) {
+                                        const fmi2ValueReference known[], size_t n_known,
+                                        const fmi2Real known_change[], fmi2Real unknown_change[]) {
   return guarded(c, readable, "fmi2GetDirectionalDerivative", [&](Instance& i) {
     need(unknown, n_unknown, "vUnknown_ref"), need(known, n_known, "vKnown_ref");
     need(known_change, n_known, "dvKnown"), need(unknown_change, n_unknown, "dvUnknown");
@@ -280,8 +281,8 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
   });
 }
 
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Integer order[],
-                                       const fmi2Real value[]) {
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                       const fmi2Integer order[], const fmi2Real value[]) {
   return guarded(c, settable, "fmi2SetRealInputDerivatives", [&](Instance& i) {
     need(vr, n, "vr"), need(order, n, "order"), need(value, n, "value");
     i.set_input_derivatives(vr, n, order, value);
@@ -289,8 +290,8 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
   });
 }
 
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Integer order[],
-                                        fmi2Real value[]) {
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                        const fmi2Integer order[], fmi2Real value[]) {
   return guarded(c, after_step, "fmi2GetRealOutputDerivatives", [&](Instance& i) {
     need(vr, n, "vr"), need(order, n, "order"), need(value, n, "value");
     for (size_t k = 0; k < n; ++k) value[k] = i.output_derivative(vr[k], order[k]);
@@ -306,7 +307,9 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
   return guarded(c, 0, "fmi2CancelStep", [](Instance&) { return fmi2OK; });
 }
 
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind, fmi2Status*) { return no_status(c, "fmi2GetStatus"); }
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind, fmi2Status*) {
+  return no_status(c, "fmi2GetStatus");
+}
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
   if (kind != fmi2LastSuccessfulTime) return no_status(c, "fmi2GetRealStatus");

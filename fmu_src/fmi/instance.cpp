@@ -37,7 +37,8 @@ bool same_type(Type a, Type b) {
 }  // namespace
 
 const Variable& Instance::variable(unsigned reference, Type type) const {
-  if (reference >= vr::count) refuse("value reference %u: must be below %u", reference, static_cast<unsigned>(vr::count));
+  if (reference >= vr::count)
+    refuse("value reference %u: must be below %u", reference, static_cast<unsigned>(vr::count));
   const Variable& v = variables[reference];
   if (!same_type(v.type, type)) refuse("%s: is of type %s, not %s", v.name, type_name(v.type), type_name(type));
   return v;
@@ -60,7 +61,8 @@ void Instance::reset() {
 
 void Instance::setup_experiment(const Experiment& e) {
   if (!std::isfinite(e.start)) refuse("startTime = %g s: must be a finite number", e.start);
-  if (e.has_stop && !(e.stop >= e.start)) refuse("stopTime = %.10g s: must not be before startTime = %.10g s", e.stop, e.start);
+  if (e.has_stop && !(e.stop >= e.start))
+    refuse("stopTime = %.10g s: must not be before startTime = %.10g s", e.stop, e.start);
   experiment_ = e;
   time_ = e.start;
 }
@@ -130,7 +132,8 @@ void Instance::set_input_derivatives(const fmi2ValueReference references[], size
     const Variable& v = variable(references[i], Type::Real);
     if (!v.binding.input) refuse("%s: is no input and has no input derivatives", v.name);
     if (orders[i] != 1 && orders[i] != 2) refuse("%s: derivative of order %d; must be 1 or 2", v.name, orders[i]);
-    if (!std::isfinite(values[i])) refuse("%s: derivative of order %d = %g: must be a finite number", v.name, orders[i], values[i]);
+    if (!std::isfinite(values[i]))
+      refuse("%s: derivative of order %d = %g: must be a finite number", v.name, orders[i], values[i]);
   }
   for (size_t i = 0; i < n; ++i) {
     Signal& s = variables[references[i]].binding.input(inputs_);
@@ -147,8 +150,9 @@ double Instance::output_derivative(unsigned reference, int order) {
   return v.binding.output(simulation().output_rates());
 }
 
-void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown, const fmi2ValueReference known[],
-                                      size_t n_known, const double direction[], double result[]) {
+void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown,
+                                      const fmi2ValueReference known[], size_t n_known, const double direction[],
+                                      double result[]) {
   Inputs change;
   for (size_t i = 0; i < n_known; ++i) {
     const Variable& v = variable(known[i], Type::Real);
@@ -158,7 +162,8 @@ void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t
   }
   for (size_t i = 0; i < n_unknown; ++i) {
     const Variable& v = variable(unknown[i], Type::Real);
-    if (v.binding.parameter || v.binding.input) refuse("%s: must be an output to be unknown in a directional derivative", v.name);
+    if (v.binding.parameter || v.binding.input)
+      refuse("%s: must be an output to be unknown in a directional derivative", v.name);
   }
   const Outputs y = simulation().outputs_change(change);
   for (size_t i = 0; i < n_unknown; ++i) {
@@ -175,7 +180,8 @@ fmi2Status Instance::step(double from, double length) {
     refuse("currentCommunicationPoint = %.17g s: must be %.17g s, where the last step ended", from, time_);
   const double to = from + length;
   if (experiment_.has_stop && to > experiment_.stop + rounding)
-    refuse("communicationStepSize = %.10g s: leads to %.17g s, past stopTime = %.17g s", length, to, experiment_.stop);
+    refuse("communicationStepSize = %.10g s: leads to %.17g s, past stopTime = %.17g s", length, to,
+           experiment_.stop);
 
   char text[320];
   Simulation& s = *simulation_;
@@ -188,11 +194,12 @@ fmi2Status Instance::step(double from, double length) {
   outputs_.reset();
   if (!s.advance(held, failure)) {
     phase = StepFailed;
-    std::snprintf(text, sizeof text,
-                  "t = %.10g s: no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
-                  "iterations: %d. The state is that of %.10g s",
-                  from + failure.time, dof_name[failure.step.dof], failure.step.residual,
-                  failure.step.dof == ALPHA || failure.step.dof == BETA ? "N.m" : "N", failure.step.iterations, time_);
+    std::snprintf(
+        text, sizeof text,
+        "t = %.10g s: no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
+        "iterations: %d. The state is that of %.10g s",
+        from + failure.time, dof_name[failure.step.dof], failure.step.residual,
+        failure.step.dof == ALPHA || failure.step.dof == BETA ? "N.m" : "N", failure.step.iterations, time_);
     log.write(fmi2Discard, Category::logStatusDiscard, text);
     return fmi2Discard;
   }
@@ -200,7 +207,8 @@ fmi2Status Instance::step(double from, double length) {
   phase = StepComplete;
   time_ = to;
   if (report && s.outputs().refinements > refinements) {
-    std::snprintf(text, sizeof text, "t = %.10g s: %.0f halvings of the internal step", time_, s.outputs().refinements - refinements);
+    std::snprintf(text, sizeof text, "t = %.10g s: %.0f halvings of the internal step", time_,
+                  s.outputs().refinements - refinements);
     log.write(fmi2OK, Category::logSolver, text);
   }
   return fmi2OK;

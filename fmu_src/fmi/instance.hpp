@@ -37,8 +37,7 @@ struct Experiment {
 
 class Instance {
  public:
-  Instance(const fmi2CallbackFunctions& functions, const char* name, bool debug)
-      : log(functions, name, debug) {
+  Instance(const fmi2CallbackFunctions& functions, const char* name, bool debug) : log(functions, name, debug) {
     reset();
   }
 
@@ -51,10 +50,12 @@ class Instance {
   double get(unsigned reference, Type type);
   // All or nothing.
   void set(const fmi2ValueReference references[], size_t n, Type type, const double values[]);
-  void set_input_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[], const double values[]);
+  void set_input_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[],
+                             const double values[]);
   double output_derivative(unsigned reference, int order);
-  void directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown, const fmi2ValueReference known[],
-                              size_t n_known, const double direction[], double result[]);
+  void directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown,
+                              const fmi2ValueReference known[], size_t n_known, const double direction[],
+                              double result[]);
 
   fmi2Status step(double from, double length);
   double last_successful_time() const { return time_; }

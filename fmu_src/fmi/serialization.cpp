@@ -52,14 +52,17 @@ std::vector<double> deserialize(const char* bytes, std::size_t size) {
   Header h;
   if (size < sizeof h) throw Refusal("serialized state: too short to be one");
   std::memcpy(&h, bytes, sizeof h);
-  if (std::memcmp(h.magic, magic, sizeof magic) != 0 || std::memcmp(h.guid, ZSPRING_GUID, sizeof(ZSPRING_GUID)) != 0)
-    throw Refusal("serialized state: comes from another FMU or another version of this one; must have GUID " ZSPRING_GUID);
+  if (std::memcmp(h.magic, magic, sizeof magic) != 0 ||
+      std::memcmp(h.guid, ZSPRING_GUID, sizeof(ZSPRING_GUID)) != 0)
+    throw Refusal(
+        "serialized state: comes from another FMU or another version of this one; must have GUID " ZSPRING_GUID);
   if (h.count != (size - sizeof h) / sizeof(double) || (size - sizeof h) % sizeof(double) != 0)
     throw Refusal("serialized state: its length is not what its header tells; it was cut or extended");
   std::vector<double> numbers(h.count);
   std::memcpy(numbers.data(), bytes + sizeof h, numbers.size() * sizeof(double));
   const Header expected = header_of(numbers);
-  if (std::memcmp(&expected, &h, sizeof h) != 0) throw Refusal("serialized state: damaged, its checksum does not fit");
+  if (std::memcmp(&expected, &h, sizeof h) != 0)
+    throw Refusal("serialized state: damaged, its checksum does not fit");
   return numbers;
 }
 

@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
     const auto begin = std::chrono::steady_clock::now();
     Simulation simulation(p, Inputs());
     AdvanceFailure failure;
-    if (!simulation.advance({Inputs(), frequency, acceleration, std::atof(argv[2]) / frequency}, failure)) return 1;
+    if (!simulation.advance({Inputs(), frequency, acceleration, std::atof(argv[2]) / frequency}, failure))
+      return 1;
     steps += simulation.outputs().steps;
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }

@@ -59,7 +59,8 @@ int main(int argc, char** argv) {
   const fmi2CallbackFunctions callbacks{log, nullptr, nullptr, nullptr, nullptr};
 
   long before = allocations;
-  fmi2Component c = load<fmi2InstantiateTYPE>(library, "fmi2Instantiate")("p", fmi2CoSimulation, argv[2], "", &callbacks, 0, 0);
+  fmi2Component c =
+      load<fmi2InstantiateTYPE>(library, "fmi2Instantiate")("p", fmi2CoSimulation, argv[2], "", &callbacks, 0, 0);
   const long in_instantiate = allocations - before;
   if (!c) return 4;
   for (int i = 5; i < argc; ++i) {
