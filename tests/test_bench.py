@@ -96,6 +96,10 @@ def test_whole_periods_are_counted_from_the_end_of_the_ramp(pantograph):
         p.step(1 / FREQUENCY)
         counts.append(p["bench.periods"])
     assert counts == [0, 1, 2, 3, 4, 5]
+    p.step(1 / FREQUENCY - 1e-4)
+    assert p["bench.periods"] == 5
+    p.step(1e-4)
+    assert p["bench.periods"] == 6
     p["bench.acceleration"] = 2 * ACCELERATION
     p.step(0.5 / FREQUENCY)
     assert p["bench.periods"] == 0
