@@ -1,7 +1,8 @@
 """Set-up shared by scripts/frf and scripts/test: the built package in the virtual environment .venv.
 
-Done in three stages, each repeated when what it depends on has changed: the environment with the dependencies
-of pyproject.toml, the package zspring with its FMU, the C++ probes of the tests. A stage is struck from the
+Done in stages, each repeated when what it depends on has changed: the environment with the dependencies of
+pyproject.toml, the package zspring with its FMU; for the tests also all extras of pyproject.toml and the C++
+probes. A stage is struck from the
 stamp file before it starts and written there when it is complete, so an interruption costs that stage only.
 Needs nothing but the standard library.
 """
@@ -44,9 +45,11 @@ except ModuleNotFoundError:
     from pip._vendor import tomli as tomllib
 with open(sys.argv[1], "rb") as file:
     table = tomllib.load(file)
-groups = [table["build-system"]["requires"], table["project"]["dependencies"],
-          table["project"]["optional-dependencies"]["test"]]
-groups += [table["dependency-groups"][name] for name in sys.argv[2:]]
+if sys.argv[2:] == ["extras"]:
+    groups = table["project"]["optional-dependencies"].values()
+else:
+    groups = [table["build-system"]["requires"], table["project"]["dependencies"]]
+    groups += [table["dependency-groups"][name] for name in sys.argv[2:]]
 print("\\n".join(requirement for group in groups for requirement in group))
 """
 
@@ -103,6 +106,11 @@ def write_stamp(stamp: dict) -> None:
     os.replace(unfinished, STAMP)
 
 
+def note_dependencies(stamp: dict) -> None:
+    """Write the stamp with what is installed now, so that a dependency that is lost is noticed."""
+    write_stamp(stamp | {"dependencies": sorted(name for name in installed() if "spring" not in name)})
+
+
 def make_environment(runner: Runner, keep: bool) -> str:
     """Make .venv, or update one that is to be kept; returns the compiler's command."""
     if importlib.util.find_spec("ensurepip") is None:
@@ -112,14 +120,23 @@ def make_environment(runner: Runner, keep: bool) -> str:
         say(f"making .venv with Python {sys.version_info[0]}.{sys.version_info[1]}")
         runner.run("cannot make .venv", [sys.executable, "-m", "venv", "--clear", VENV])
 
-    groups = ["build"] if compiler else ["build", "zig"]
-    listing = subprocess.run([PYTHON, "-c", READ_REQUIREMENTS, ROOT / "pyproject.toml", *groups],
-                             env=environment(), check=True, capture_output=True, text=True)
     say("installing the dependencies" + ("" if compiler else " and, as there is no C++ compiler, zig")
         + " (one to three minutes)")
+    install_requirements(runner, *(["build"] if compiler else ["build", "zig"]))
+    return compiler or ZIG
+
+
+def install_requirements(runner: Runner, *groups: str) -> None:
+    """Install what pyproject.toml requires: always and in these dependency groups, or all "extras"."""
+    listing = subprocess.run([PYTHON, "-c", READ_REQUIREMENTS, ROOT / "pyproject.toml", *groups],
+                             env=environment(), check=True, capture_output=True, text=True)
     runner.run("cannot install the dependencies (is there a network?)",
                [PYTHON, "-m", "pip", "install", "--progress-bar=off", *listing.stdout.splitlines()])
-    return compiler or ZIG
+
+
+def install_extras(runner: Runner, _compiler: str) -> None:
+    say("installing what the tests and all studies need (one to three minutes)")
+    install_requirements(runner, "extras")
 
 
 def python_identity() -> str:
@@ -171,6 +188,7 @@ def set_up(with_probes: bool) -> None:
         "package": fingerprint(*PACKAGE_SOURCES),
     }
     if with_probes:
+        wanted["extras"] = wanted["requirements"]
         wanted["probes"] = fingerprint(*PROBE_SOURCES)
 
     def outdated(stage: str) -> bool:
@@ -189,15 +207,14 @@ def set_up(with_probes: bool) -> None:
             compiler = make_environment(runner, keep)
             stamp = {stage: wanted[stage] for stage in ("python", "requirements")}
             stamp["compiler"] = compiler
-            stamp["dependencies"] = sorted(name for name in installed() if "spring" not in name)
-            write_stamp(stamp)
-        for stage, build in ("package", build_package), ("probes", build_probes):
+            note_dependencies(stamp)
+        for stage, build in ("extras", install_extras), ("package", build_package), ("probes", build_probes):
             if stage in wanted and outdated(stage):
                 stamp.pop(stage, None)
                 write_stamp(stamp)
                 build(runner, stamp["compiler"])
                 stamp[stage] = wanted[stage]
-                write_stamp(stamp)
+                note_dependencies(stamp)
         say(f"ready after {time.monotonic() - begin:.0f} s")
 
 

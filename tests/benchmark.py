@@ -89,7 +89,7 @@ def accuracy(instance: Instance, reference_step: float) -> None:
             H, *_ = run(instance, [f"friction={law}", f"solver.step={step}"])
             error = 100 * np.abs(np.abs(H / exact) - 1)
             amplitude, frequency = POINTS[error.argmax()]
-            print(f"{law:<11}  {1e3 * step:g} ms{np.median(error):>11.3f}{error.max():>10.2f}   "
+            print(f"{law:<11}  {f'{1e3 * step:g} ms':<8}{np.median(error):>7.3f}{error.max():>10.2f}   "
                   f"{f'{frequency:g} Hz, {amplitude:g} m/s2':<20}  {np.abs(np.angle(H / exact)).max():>8.4f}")
 
 
