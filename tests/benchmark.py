@@ -8,7 +8,6 @@ take turns, so that a busy machine hurts all of them alike; their ratios say mor
 from __future__ import annotations
 
 import subprocess
-import time
 from collections.abc import Iterable
 from itertools import groupby
 
@@ -17,27 +16,17 @@ import numpy as np
 from core import probe_folder
 from tqdm import tqdm
 from zspring.fmu import Fmu, Instance
-from zspring.frf.measure import FrfSettings, sweeps
+from zspring.frf.fixed_work import PERIODS, figure_points, run_points
+from zspring.frf.measure import FrfSettings
 
-PERIODS = 30
 ROUNDS = 5
-COUNTERS = ["solver.steps", "solver.iterations", "solver.iterations_max", "solver.refinements"]
-# (amplitude in m/s2, frequency in Hz)
-POINTS = [(sweep.amplitude, f) for sweep in sweeps(FrfSettings()) for f in sweep.frequencies]
+POINTS = figure_points(FrfSettings())
 
 
 def run(instance: Instance, settings: Iterable[str]) -> tuple[np.ndarray, np.ndarray, float]:
     """H (m/N) and counters of every point, (points,) and (points, 4), and the seconds it took."""
-    fixed = instance.variables.parse_assignments(["drive=Bench", *settings])
-    H, counts = [], []
-    begin = time.perf_counter()
-    for amplitude, frequency in POINTS:
-        instance.start({**fixed, "bench.frequency": frequency, "bench.acceleration": amplitude})
-        instance.step(0, PERIODS / frequency)
-        real, imaginary, *counters = instance.get(["bench.H_re", "bench.H_im", *COUNTERS])
-        H.append(complex(real, imaginary))
-        counts.append(counters)
-    return np.array(H), np.array(counts), time.perf_counter() - begin
+    work = run_points(instance, instance.variables.parse_assignments(settings), POINTS)
+    return work.H, work.counts, work.seconds.sum()
 
 
 def core_alone(friction: str) -> float:

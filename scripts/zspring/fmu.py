@@ -173,6 +173,12 @@ class Instance:
                 values.update(zip((variable.name for variable in group), numbers))
         return [values[name] for name in names]
 
+    def get_slopes(self, names: Sequence[str]) -> list[float]:
+        """First time derivatives of Real outputs by name, at the last communication point."""
+        with self.refusals():
+            references = [self.variables[name].valueReference for name in names]
+            return list(self.slave.getRealOutputDerivatives(references, [1] * len(references)))
+
     def step(self, time: float, size: float) -> None:
         """One communication step. Raises StepDiscarded if it could not be solved."""
         with self.refusals():

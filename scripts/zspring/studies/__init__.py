@@ -1,0 +1,1 @@
+"""The published claims about the pantograph, one command each."""

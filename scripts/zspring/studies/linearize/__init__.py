@@ -1,0 +1,1 @@
+"""Modes and matrices of the linear models."""

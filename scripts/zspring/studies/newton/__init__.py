@@ -1,0 +1,1 @@
+"""Newton tangents of the steep friction law, and what its steepness costs."""

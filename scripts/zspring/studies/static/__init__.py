@@ -1,0 +1,1 @@
+"""Hysteresis and equivalent stiffness of the head suspension under slow loading."""
