@@ -8,9 +8,15 @@ import click
 
 from .errors import ZSpringError
 from .frf.command import frf
+from .identify.command import identify
 from .info import info
 from .interrupt import Interrupted
 from .simulation.command import simulate
+from .studies.integrators.command import integrators
+from .studies.linearize.command import linearize
+from .studies.mechanism.command import mechanism
+from .studies.newton.command import newton
+from .studies.static.command import static
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -19,7 +25,7 @@ def commands() -> None:
     """DSA-380 pantograph with Z-spring head suspension, as an FMI 2.0 co-simulation FMU."""
 
 
-for command in (frf, simulate, info):
+for command in (frf, simulate, identify, info, static, newton, integrators, mechanism, linearize):
     commands.add_command(command)
 
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
 
 from .fmu import Fmu
+from .parameter_sets import find_set, read_set
+from .variables import Value
 
 MOST_NUMBERS = 100_000
 
@@ -60,6 +62,13 @@ set_option = click.option(
     help="Set a parameter of the FMU, in its unit or by the name of an enumeration's item; repeatable. "
     "`zspring info` lists them.",
 )
+parameters_option = click.option(
+    "--parameters",
+    "parameter_set",
+    metavar="NAME|FILE",
+    help="Set the parameters of a pantograph: the name of a set (`zspring info --sets` lists them) or an SSV file "
+    "of SSP 1.0. --set goes before it.",
+)
 format_option = click.option(
     "--format",
     "suffix",
@@ -77,3 +86,17 @@ def opened(path: Path | None) -> Iterator[Fmu]:
         yield fmu
         for warning in fmu.warnings:
             print(f"the FMU warns: {warning}", file=sys.stderr)
+
+
+def chosen_parameters(
+    fmu: Fmu, parameter_set: str | None, assignments: Iterable[str], but_not: Sequence[str] = ()
+) -> dict[str, Value]:
+    """Parameters of the FMU from --parameters and --set.
+
+    but_not     parameters that the command sets itself: passed over in a set, refused in an assignment
+    """
+    values = read_set(find_set(parameter_set), fmu) if parameter_set else {}
+    return {
+        **{name: value for name, value in values.items() if name not in but_not},
+        **fmu.variables.parse_assignments(assignments, but_not),
+    }

@@ -7,7 +7,15 @@ from pathlib import Path
 
 import click
 
-from ..options import Numbers, fmu_option, format_option, opened, set_option
+from ..options import (
+    Numbers,
+    chosen_parameters,
+    fmu_option,
+    format_option,
+    opened,
+    parameters_option,
+    set_option,
+)
 from .measure import BENCH_PARAMETERS, BENCHES, LOOK_PERIODS, FrfSettings
 from .quantities import QUANTITIES
 from .run import default_folder, run_frf
@@ -37,6 +45,7 @@ STANDARD = FrfSettings()
     show_default=True,
     help="Sweep the frequency up or down without stopping, or begin each point in the static state.",
 )
+@parameters_option
 @set_option
 @click.option(
     "--quantity",
@@ -105,6 +114,7 @@ def frf(
     amplitudes,
     frequencies,
     direction,
+    parameter_set,
     assignments,
     quantity,
     output,
@@ -131,7 +141,7 @@ def frf(
             f"{max_periods}: must not be below --min-periods {min_periods}", param_hint="--max-periods"
         )
     with opened(fmu_path) as fmu:
-        parameters = fmu.variables.parse_assignments(assignments, but_not=BENCH_PARAMETERS)
+        parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=BENCH_PARAMETERS)
         settings = FrfSettings(
             amplitudes,
             frequencies,

@@ -36,7 +36,7 @@ class FrfSettings:
     parameters: Mapping[str, Value] = field(default_factory=dict)  # of the FMU
     direction: str = "up"  # "up", "down", or "rest": each point from the static state
     through: str = "bench"  # key of BENCHES
-    tolerance: float = 1e-3  # largest relative change of H, see _settle
+    tolerance: float = 1e-3  # largest relative change of H, see settle
     min_periods: int = 8
     max_periods: int = 400
     stroke: float = 0.1  # m, largest displacement peak
@@ -146,7 +146,7 @@ def _run(
     for frequency in sweep.frequencies:
         go = bench.tune if state else bench.start
         go(frequency, sweep.amplitude)
-        point = _settle(bench, sweep.amplitude, frequency, settings, stop)
+        point = settle(bench, sweep.amplitude, frequency, settings, stop)
         if point is None:
             return
         keep = settings.direction != "rest" and not point.status.startswith(FAILED)
@@ -154,7 +154,7 @@ def _run(
         yield point, state
 
 
-def _settle(
+def settle(
     bench: Bench, amplitude: float, frequency: float, settings: FrfSettings, stop: threading.Event
 ) -> FrfPoint | None:
     """Run until H is steady or the most periods allowed have passed; None if stopped before.

@@ -6,13 +6,14 @@ from pathlib import Path
 
 import click
 
-from ..options import fmu_option, format_option, opened, set_option
+from ..options import chosen_parameters, fmu_option, format_option, opened, parameters_option, set_option
 from .inputs import read_inputs
 from .run import simulate as run_simulation
 
 
 @click.command()
 @click.option("--drive", help="What moves the head, as --set drive=...: Force, Displacement, Wire or Bench.")
+@parameters_option
 @set_option
 @click.option(
     "--input",
@@ -49,13 +50,14 @@ from .run import simulate as run_simulation
 @format_option
 @fmu_option
 def simulate(
-    drive, assignments, input_path, interpolation, stop_time, step, output, suffix, fmu_path
+    drive, parameter_set, assignments, input_path, interpolation, stop_time, step, output, suffix, fmu_path
 ) -> None:
     """Simulate any drive with inputs from a CSV file.
 
     Writes simulation.csv with all outputs, and a figure. After Ctrl-C the rows so far are kept.
     """
     with opened(fmu_path) as fmu:
-        parameters = fmu.variables.parse_assignments([*assignments, *([f"drive={drive}"] if drive else [])])
+        assignments = [*assignments, *([f"drive={drive}"] if drive else [])]
+        parameters = chosen_parameters(fmu, parameter_set, assignments)
         inputs = read_inputs(input_path, fmu.variables) if input_path else None
         run_simulation(fmu, parameters, inputs, interpolation, stop_time, step, output, suffix)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import math
-import re
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import ZSpringError
+from ..tables import finite_number, read_rows, split_label
 from ..variables import Variables
 
 TIME_UNITS = {"s": 1.0, "ms": 1e-3}
@@ -22,20 +20,10 @@ def read_inputs(path: Path, variables: Variables) -> tuple[np.ndarray, dict[str,
     begin with # are comments. Raises ZSpringError, with line and column, for an unknown column or unit, a
     gap, a value that is no finite number, and time that does not increase.
     """
-    try:
-        with open(path, encoding="utf-8-sig", newline="") as file:
-            numbered = [
-                (number, line) for number, line in enumerate(file, 1) if line.strip() and line[0] != "#"
-            ]
-    except UnicodeDecodeError:
-        raise ZSpringError(f"{path}: no text in UTF-8") from None
-    rows = [
-        (number, [cell.strip() for cell in row])
-        for (number, _), row in zip(numbered, csv.reader(line for _, line in numbered))
-    ]
-    if len(rows) < 3:
+    labels, rows = read_rows(path)
+    if len(rows) < 2:
         raise ZSpringError(f"{path}: needs a line of column names and at least two rows")
-    columns = [_column(path, label, variables) for label in rows[0][1]]
+    columns = [_column(path, label, variables) for label in labels]
     names = [name for name, _, _ in columns]
     for name in names:
         if names.count(name) > 1:
@@ -43,12 +31,14 @@ def read_inputs(path: Path, variables: Variables) -> tuple[np.ndarray, dict[str,
     if "time" not in names:
         raise ZSpringError(f"{path}: no column 'time [s]'")
 
-    table = np.array([_numbers(path, number, row, names) for number, row in rows[1:]])
+    table = np.array(
+        [[finite_number(path, line, name, cell) for name, cell in zip(names, row)] for line, row in rows]
+    )
     values = {name: (column - offset) / factor for (name, factor, offset), column in zip(columns, table.T)}
     time = values.pop("time")
     late = np.flatnonzero(np.diff(time) <= 0)
     if late.size:
-        number, (before, after) = rows[late[0] + 2][0], time[late[0] : late[0] + 2]
+        number, (before, after) = rows[late[0] + 1][0], time[late[0] : late[0] + 2]
         raise ZSpringError(f"{path}, line {number}: time = {after:g} s after {before:g} s: must increase")
     return time, values
 
@@ -68,7 +58,7 @@ def interpolate(time: np.ndarray, values: np.ndarray, points: np.ndarray, kind: 
 
 def _column(path: Path, label: str, variables: Variables) -> tuple[str, float, float]:
     """Name, and factor and offset of the unit, of a column "NAME" or "NAME [UNIT]"."""
-    name, unit = re.fullmatch(r"([^\[]*?)\s*(?:\[(.*)\])?", label).groups()
+    name, unit = split_label(label)
     try:
         if name == "time":
             if unit not in (None, *TIME_UNITS):
@@ -80,18 +70,3 @@ def _column(path: Path, label: str, variables: Variables) -> tuple[str, float, f
         return (name, *variables.factor_and_offset(variables[name], unit or variables[name].unit))
     except ZSpringError as error:
         raise ZSpringError(f"{path}: {error}") from None
-
-
-def _numbers(path: Path, line: int, row: list[str], names: list[str]) -> list[float]:
-    if len(row) != len(names):
-        raise ZSpringError(f"{path}, line {line}: {len(row)} values for {len(names)} columns")
-    numbers = []
-    for name, cell in zip(names, row):
-        try:
-            number = float(cell)
-        except ValueError:
-            number = math.nan
-        if not math.isfinite(number):
-            raise ZSpringError(f"{path}, line {line}: {name} = {cell!r}: must be a finite number")
-        numbers.append(number)
-    return numbers

@@ -1,0 +1,1 @@
+"""Identification of the pantograph's parameters from measured frequency responses."""

@@ -1,0 +1,137 @@
+"""Least squares with bounds, and what the Jacobian at the solution tells about the parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from .problem import Answer, Problem
+
+AT_BOUND = 1e-3  # of the range, tried for being held at the bound
+SINGULAR = 1e-9  # relative to the largest singular value of the scaled Jacobian
+NOISE_FREE = 1e-12  # half the sum of squared residuals that is as good as none
+MOST_EVALUATIONS = 100
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Solution x (n,) and its statistics; arrays over the free parameters in their order."""
+
+    x: np.ndarray
+    values: np.ndarray  # parameters, in the FMU's units
+    answer: Answer
+    cost: float  # half the sum of squared residuals
+    is_converged: bool
+    message: str
+    evaluations: int
+    at_bound: np.ndarray  # bool: held at a bound, where the residuals push it
+    standard_error: np.ndarray  # in the FMU's units; NaN at a bound, inf where the data say nothing
+    unbound_error: np.ndarray  # what it would be if none were held
+    correlation: np.ndarray  # (n, n), NaN where there is no standard error
+
+
+def fit(problem: Problem, x: np.ndarray, progress: Callable[[float], None]) -> Fit:
+    """Least squares from x (n,) by a trust-region method.
+
+    The method keeps all parameters off their bounds by a little. Those that come close to one are then held
+    exactly at it while the others are fitted again, and stay there if the cost does not grow.
+    `progress` is told the cost of each evaluation.
+    """
+    result, held = _solve(problem, x, np.zeros(x.size, bool), progress), np.zeros(x.size, bool)
+    evaluations = result.nfev
+    near = (result.x < AT_BOUND) | (result.x > 1 - AT_BOUND)
+    if near.any():
+        bounded = _solve(problem, np.where(near, result.x.round(), result.x), near, progress)
+        evaluations += bounded.nfev
+        if bounded.cost <= result.cost * (1 + 1e-6) + NOISE_FREE:
+            result, held = bounded, near
+    answer = result.answer
+    jacobian = problem.jacobian(result.x, answer, range(x.size))
+    error, correlation = statistics(problem, result.x, jacobian, held, result.cost)
+    unbound_error, _ = statistics(problem, result.x, jacobian, np.zeros_like(held), result.cost)
+    return Fit(
+        x=result.x,
+        values=np.array([free.value(at) for free, at in zip(problem.settings.free, result.x)]),
+        answer=answer,
+        cost=float(result.cost),
+        is_converged=bool(result.status > 0),
+        message=result.message,
+        evaluations=evaluations,
+        at_bound=held,
+        standard_error=error,
+        unbound_error=unbound_error,
+        correlation=correlation,
+    )
+
+
+def statistics(
+    problem: Problem, x: np.ndarray, jacobian: np.ndarray, held: np.ndarray, cost: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Standard errors (n,) and correlations (n, n) from the Jacobian (m, n) with respect to x.
+
+    cov = s^2 (J^T J)^-1 with s^2 = 2 cost / (m - n), for residuals that are independent and of one size
+    (Bates and Watts, Nonlinear Regression Analysis, 1988, section 2.2). A direction in which the residuals do
+    not change makes the standard errors of its parameters infinite.
+    """
+    n = x.size
+    error, correlation = np.full(n, np.nan), np.full((n, n), np.nan)
+    kept = np.flatnonzero(~held)
+    if not kept.size:
+        return error, correlation
+    J = jacobian[:, kept]
+    scale = np.linalg.norm(J, axis=0)
+    scale[scale == 0] = 1.0
+    _, singular, directions = np.linalg.svd(J / scale, full_matrices=False)
+    usable = singular > SINGULAR * singular[0]
+    lost = np.any(np.abs(directions[~usable]) > 0.1, axis=0) | ~np.any(J, axis=0)
+    inverse = directions[usable].T / singular[usable]
+    variance = 2 * cost / max(J.shape[0] - kept.size, 1)
+    covariance = variance * (inverse @ inverse.T) / np.outer(scale, scale)
+    sigma = np.sqrt(np.diag(covariance))
+    slopes = np.array([problem.settings.free[i].slope(x[i]) for i in kept])
+    error[kept] = np.where(lost, np.inf, sigma * slopes)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        matrix = covariance / np.outer(sigma, sigma)
+    matrix[lost, :] = matrix[:, lost] = np.nan
+    correlation[np.ix_(kept, kept)] = matrix
+    return error, correlation
+
+
+def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable[[float], None]):
+    """scipy's result for the parameters that are not held, x complete, and `answer` at the solution."""
+    kept = np.flatnonzero(~held)
+    answers: dict[bytes, Answer] = {}
+
+    def complete(part: np.ndarray) -> np.ndarray:
+        whole = x.copy()
+        whole[kept] = part
+        return whole
+
+    def function(part: np.ndarray) -> np.ndarray:
+        (answer,) = problem.answers([complete(part)])
+        answers[part.tobytes()] = answer
+        residuals = problem.residuals(answer)
+        progress(0.5 * float(residuals @ residuals))
+        return residuals
+
+    def jacobian(part: np.ndarray) -> np.ndarray:
+        return problem.jacobian(complete(part), answers[part.tobytes()], kept)
+
+    result = least_squares(
+        function,
+        x[kept],
+        jac=jacobian,
+        bounds=(0.0, 1.0),
+        method="trf",
+        x_scale="jac",
+        ftol=problem.tolerance,
+        xtol=problem.tolerance,
+        gtol=None,
+        max_nfev=MOST_EVALUATIONS,
+    )
+    result.answer = answers[result.x.tobytes()]
+    result.x = complete(result.x)
+    return result

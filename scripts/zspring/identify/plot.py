@@ -1,0 +1,59 @@
+"""Figures of a fit: measured points against the fitted model. Nothing is simulated here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ..figures import new_figure
+from ..frf.quantities import phase_degrees
+from .measured import Curve
+from .report import magnitude_error
+from .static_test import StaticTest
+
+
+def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], title: str) -> Figure:
+    """Magnitude, phase and error of the magnitude over frequency, one colour for each amplitude.
+
+    fitted      receptances (n,) in m/N of each curve
+    """
+    figure = new_figure(8.5, 9)
+    magnitude, phase, error = figure.subplots(3, 1, sharex=True, height_ratios=[2, 1, 1])
+    colors = matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(curves)))
+    for curve, H, color in zip(curves, fitted, colors):
+        points = {"color": color, "linestyle": "none", "marker": "o", "fillstyle": "none", "markersize": 3}
+        line = {"color": color, "linewidth": 1.2}
+        magnitude.semilogy(curve.frequency, np.abs(curve.H), **points)
+        magnitude.semilogy(curve.frequency, np.abs(H), label=curve.label, **line)
+        phase.plot(curve.frequency, phase_degrees(curve.H, "receptance"), **points)
+        phase.plot(curve.frequency, phase_degrees(H, "receptance"), **line)
+        error.plot(curve.frequency, 100 * magnitude_error(curve, H), marker=".", markersize=3, **line)
+    handles = [
+        Line2D([], [], color="gray", linestyle="none", marker="o", fillstyle="none", label="measured"),
+        Line2D([], [], color="gray", label="fitted"),
+        *magnitude.get_legend_handles_labels()[0],
+    ]
+    magnitude.legend(handles=handles, fontsize=8, ncols=2)
+    magnitude.set(title=title, ylabel="|H|, receptance  [m/N]")
+    phase.set(ylabel="phase  [deg]")
+    error.set(xlabel="frequency  [Hz]", ylabel="fitted / measured - 1  [%]")
+    for axes in (magnitude, phase, error):
+        axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
+    return figure
+
+
+def static_figure(test: StaticTest, force: np.ndarray, title: str) -> Figure:
+    """Force against displacement, measured and fitted, each without its mean. `force` (n,) in N."""
+    figure = new_figure(6.5, 5)
+    axes = figure.subplots()
+    displacement = 1e3 * test.displacement
+    axes.plot(displacement, test.force - test.force.mean(), "o", color="gray", markersize=3, label="measured")
+    axes.plot(displacement, force - force.mean(), color="tab:blue", linewidth=1.2, label="fitted")
+    axes.set(title=title, xlabel="displacement of the head  [mm]", ylabel="force on the head, mean removed  [N]")
+    axes.grid(True, linewidth=0.4, alpha=0.5)
+    axes.legend()
+    return figure

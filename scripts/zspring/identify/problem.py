@@ -1,0 +1,163 @@
+"""The fit as a least-squares problem in x, the free parameters between their bounds (0 to 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ..frf.quantities import as_quantity
+from ..receptance import receptance
+from ..variables import Value
+from .bench_model import BenchModel, Periods
+from .measured import Curve
+from .settings import Settings
+from .static_test import StaticTest
+
+# Residual of a point that the model could not compute: 10 in the logarithm, or 10 times the mean square.
+PENALTY = 10.0
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the model has for one x."""
+
+    curves: list[np.ndarray]  # receptances (n,) in m/N, NaN where it failed
+    static: np.ndarray | None  # forces (n,) in N
+    periods: list[Periods] | None = None
+
+
+class Model(Protocol):
+    """Computes answers.
+
+    relative_step   of a parameter, which differences of the answers need
+    tolerance       relative change of cost or x at which least squares may end
+    """
+
+    relative_step: float
+    tolerance: float
+
+    def answers(
+        self, candidates: Sequence[Mapping[str, Value]], like: Answer | None = None
+    ) -> list[Answer]:
+        """One answer for each set of parameters; `like`: comparable with this one to the smallest detail."""
+
+    def with_curves(self, curves: Sequence[Curve]) -> Model:
+        """The same model for other curves."""
+
+
+class ThreeMassModel:
+    """Three masses and linear springs and dampers: the analytic receptance."""
+
+    relative_step = 1e-7
+    tolerance = 1e-12
+
+    def __init__(self, curves: Sequence[Curve], defaults: Mapping[str, Value]):
+        self._curves, self._defaults = curves, defaults
+
+    def answers(
+        self, candidates: Sequence[Mapping[str, Value]], like: Answer | None = None
+    ) -> list[Answer]:
+        del like
+        return [
+            Answer([receptance(c.frequency, {**self._defaults, **p}, "linear") for c in self._curves], None)
+            for p in candidates
+        ]
+
+    def with_curves(self, curves: Sequence[Curve]) -> ThreeMassModel:
+        return ThreeMassModel(curves, self._defaults)
+
+
+class ZSpringModel:
+    """The FMU on its bench, and in the static test if there is one."""
+
+    # Coulomb's law makes H a little rough in the parameters: at 0.3 % the differences average over that.
+    relative_step = 3e-3
+    tolerance = 1e-5
+
+    def __init__(self, bench: BenchModel, curves: Sequence[Curve], static: StaticTest | None):
+        self._bench, self._curves, self._static = bench, curves, static
+
+    def answers(
+        self, candidates: Sequence[Mapping[str, Value]], like: Answer | None = None
+    ) -> list[Answer]:
+        measured = self._bench.receptances(candidates, self._curves, like.periods if like else None)
+        forces: list[np.ndarray | None] = [None] * len(candidates)
+        if self._static:
+            forces = list(self._bench.static_forces(candidates, self._static))
+        return [
+            Answer([H for H, _ in row], force, [periods for _, periods in row])
+            for row, force in zip(measured, forces)
+        ]
+
+    def with_curves(self, curves: Sequence[Curve]) -> ZSpringModel:
+        return ZSpringModel(self._bench, curves, self._static)
+
+
+class Problem:
+    """Residuals of the model against all measured curves and the static test."""
+
+    def __init__(
+        self, settings: Settings, model: Model, curves: Sequence[Curve], static: StaticTest | None = None
+    ):
+        self.settings, self.curves, self.static = settings, list(curves), static
+        self._model = model
+        self.relative_step, self.tolerance = model.relative_step, model.tolerance
+
+    def with_curves(self, curves: Sequence[Curve]) -> Problem:
+        """The same problem with other curves."""
+        return Problem(self.settings, self._model.with_curves(curves), curves, self.static)
+
+    @property
+    def start(self) -> np.ndarray:
+        """x (n,) of the start values."""
+        return np.array([free.x(free.start) for free in self.settings.free])
+
+    def answers(self, xs: Sequence[np.ndarray]) -> list[Answer]:
+        return self._model.answers([self.settings.parameters(x) for x in xs])
+
+    def residuals(self, answer: Answer) -> np.ndarray:
+        """Residuals (m,): real and imaginary part of each point, then the static test; finite always.
+
+        Logarithmic: log(H / measured), its real part the relative error of the magnitude, its imaginary part
+        that of the phase in rad. Linear: difference over the root mean square of the measured curve.
+        """
+        parts = []
+        for curve, H in zip(self.curves, answer.curves):
+            with np.errstate(invalid="ignore", divide="ignore"):
+                if self.settings.error == "log":
+                    error = np.log(H / curve.H)
+                else:
+                    quantity = self.settings.quantity
+                    wanted = as_quantity(curve.H, quantity)
+                    scale = np.sqrt(np.mean(np.abs(wanted) ** 2))
+                    error = (as_quantity(H, quantity) - wanted) / scale
+            error = np.where(np.isfinite(error), error, PENALTY * (1 + 1j))
+            parts += [error.real, error.imag]
+        if self.static:
+            wanted, force = (f - f.mean() for f in (self.static.force, answer.static))
+            points = sum(curve.frequency.size for curve in self.curves)
+            # As heavy as all points of the curves together, if they are off as much.
+            weight = np.sqrt(self.settings.static.weight * points / wanted.size / np.mean(wanted**2))
+            error = weight * (force - wanted)
+            parts.append(np.where(np.isfinite(error), error, PENALTY))
+        return np.concatenate(parts)
+
+    def costs(self, xs: Sequence[np.ndarray]) -> np.ndarray:
+        """Half the sum of squared residuals for each x, shape (len(xs),)."""
+        return np.array([0.5 * np.sum(self.residuals(answer) ** 2) for answer in self.answers(xs)])
+
+    def jacobian(self, x: np.ndarray, answer: Answer, columns: Sequence[int]) -> np.ndarray:
+        """d residuals / dx (m, len(columns)) at x, whose answer it is, by one-sided differences."""
+        base, steps = self.residuals(answer), []
+        for free, at in ((self.settings.free[i], x[i]) for i in columns):
+            scale = max(abs(free.value(at)), 1e-3 * (free.maximum - free.minimum)) / free.slope(at)
+            step = min(self.relative_step * scale, 0.25)
+            steps.append(step if at + step <= 1 else -step)
+        shifted = [x + step * np.eye(x.size)[i] for i, step in zip(columns, steps)]
+        answers = self._model.answers([self.settings.parameters(y) for y in shifted], like=answer)
+        return np.column_stack(
+            [(self.residuals(other) - base) / step for other, step in zip(answers, steps)]
+        )

@@ -1,0 +1,223 @@
+"""An identification from settings to result folder."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import sys
+import time
+from dataclasses import replace
+from datetime import datetime, timezone
+from pathlib import Path
+
+import numpy as np
+from tqdm import tqdm
+
+from ..errors import ZSpringError
+from ..figures import save
+from ..fmu import Fmu
+from ..interrupt import Interrupted, stop_on_interrupt
+from ..parameter_sets import write_set
+from ..tables import write_head
+from ..variables import Value, parse, with_unit
+from . import report
+from .bench_model import BenchModel
+from .fit import Fit, fit
+from .measured import in_band, read_curves, sign_warning
+from .plot import fit_figure, static_figure
+from .problem import ThreeMassModel, Problem, ZSpringModel
+from .search import CostRecord, search, thinned
+from .settings import LINEAR_PARAMETERS, Settings
+from .static_test import read_static_test
+
+# Of the bench, the line and the solver, so not of a pantograph.
+OTHER_PARAMETERS = ("drive", "bench.", "contact.", "solver.")
+
+
+def identify(fmu: Fmu, settings: Settings, folder: Path, suffix: str, jobs: int) -> None:
+    """Fit, going on where an interrupted search in the folder stopped; write and print all results.
+
+    suffix      of the figures, "png" or "svg"
+    jobs        number of amplitudes measured at a time
+    Raises ZSpringError for bad data, FmuError when the FMU refuses the start values, Interrupted after Ctrl-C.
+    """
+    curves = in_band([c for source in settings.sources for c in read_curves(source)], settings.band)
+    curves.sort(key=lambda curve: float(np.median(curve.acceleration)))
+    if warning := sign_warning(curves):
+        print(warning, file=sys.stderr)
+    if settings.model == "linear":
+        curves = curves[:1]
+    count = 2 * sum(curve.frequency.size for curve in curves)
+    if count <= len(settings.free):
+        raise ZSpringError(f"{count} measured numbers cannot determine {len(settings.free)} parameters")
+    static = read_static_test(settings.static.path, settings.static.speed) if settings.static else None
+    defaults = {v.name: parse(v, v.start) for v in fmu.variables if v.causality == "parameter"}
+
+    folder.mkdir(parents=True, exist_ok=True)
+    with stop_on_interrupt() as stop, _Log(folder / "identify.log") as log, fmu.instances(jobs) as instances:
+        bench = BenchModel(instances, settings.direction, stop)
+        try:
+            if settings.model == "linear":
+                model = ThreeMassModel(curves, defaults)
+            else:
+                model = ZSpringModel(bench, curves, static)
+            problem = Problem(settings, model, curves, static)
+            bench.check(settings.parameters(problem.start))
+            log.write(f"settings {settings.path}:\n{settings.text}")
+            begin = time.perf_counter()
+            x = problem.start
+            if settings.search.generations:
+                x, record = _search(fmu, problem, folder, stop, log)
+            result = _fit(problem, x, "least squares", stop, log)
+            if settings.search.generations:
+                record.path.unlink()
+        finally:
+            bench.close()
+        summary = [
+            *report.parameter_table(fmu, problem, result),
+            *report.doubts(problem, result),
+            "",
+            *report.correlation_table(problem, result),
+            "",
+            *report.residual_table(problem, result),
+            f"fitted in {time.perf_counter() - begin:.1f} s",
+        ]
+        for line in summary:
+            log.say(line)
+    paths = [
+        _write_set(fmu, problem, result, defaults, folder / "fitted.ssv"),
+        _write_points(fmu, problem, result, folder / "fit.csv"),
+    ]
+    title = f"Identified from {', '.join(source.path.name for source in settings.sources)}"
+    figures = {"fit": fit_figure(curves, result.answer.curves, f"{title}: {settings.model} model")}
+    if static:
+        figures["static"] = static_figure(static, result.answer.static, f"{title}: static test")
+    for name, figure in figures.items():
+        paths.append(folder / f"{name}.{suffix}")
+        save(figure, paths[-1])
+    print("written:", *paths, folder / "identify.log")
+
+
+def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[np.ndarray, CostRecord]:
+    """Where to begin the fit, and the record of the search, which may be removed after it.
+
+    On a part of the points: the global search, then least squares from its best and from the start values.
+    """
+    settings = problem.settings
+    coarse = thinned(problem, settings.search.points)
+    files = [*(source.path for source in settings.sources), *([settings.static.path] if settings.static else [])]
+    head = {
+        "FMU": fmu.sha256,
+        "settings": repr(replace(settings, text="")),
+        **{str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
+    }
+    record = CostRecord(folder / "search.partial.jsonl", head)
+    if record.found:
+        print(f"going on after {record.found} candidates in {record.path}")
+    with tqdm(total=settings.search.generations, desc="search", unit=" generations", disable=None) as bar:
+
+        def progress(generation: int, cost: float) -> None:
+            log.write(f"search, generation {generation}: best cost {cost:.6g}")
+            bar.set_postfix_str(f"cost {cost:.4g}", refresh=False)
+            bar.update()
+
+        found = search(coarse, settings.search, record, stop, progress)
+    fits = {
+        name: _fit(coarse, x, f"least squares on a part, from {name}", stop, log)
+        for name, x in {"the start values": problem.start, "the search": found}.items()
+    }
+    best = min(fits, key=lambda name: fits[name].cost)
+    for name, other in fits.items():
+        if other.cost > 1.01 * fits[best].cost + 1e-9:
+            log.say(
+                f"from {name} least squares end in a worse minimum (cost {other.cost:.4g}) than from {best} "
+                f"({fits[best].cost:.4g})"
+            )
+    return fits[best].x, record
+
+
+def _fit(problem: Problem, x: np.ndarray, name: str, stop, log: _Log) -> Fit:
+    """Least squares from x (n,), with a progress bar."""
+    with tqdm(desc=name, unit=" evaluations", disable=None) as bar:
+
+        def progress(cost: float) -> None:
+            if stop.is_set():
+                raise Interrupted("interrupted; the same command goes on after the global search")
+            log.write(f"{name}: cost {cost:.6g}")
+            bar.set_postfix_str(f"cost {cost:.4g}", refresh=False)
+            bar.update()
+
+        return fit(problem, x, progress)
+
+
+def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Value], path: Path) -> Path:
+    settings = problem.settings
+    values = {**defaults, **settings.parameters(result.x)}
+    if settings.model == "linear":
+        names = ["suspension", *LINEAR_PARAMETERS]
+    else:
+        names = [name for name in values if not name.startswith(OTHER_PARAMETERS) and name != "k1"]
+    remarks = {
+        free.name: "identified, at its bound"
+        if result.at_bound[i]
+        else f"identified, standard error {result.standard_error[i]:.2g}"
+        for i, free in enumerate(settings.free)
+    }
+    remarks |= {name: f"tied to {to}" for name, (to, _) in settings.tied.items()}
+    files = ", ".join(source.path.name for source in settings.sources)
+    date = datetime.now(timezone.utc).strftime("%Y-%m-%d")
+    description = f"Identified from {files} on {date}, {settings.model} model; see {path.parent.name}/identify.log"
+    write_set(path, fmu, {name: values[name] for name in names}, path.stem, description, remarks)
+    return path
+
+
+def _write_points(fmu: Fmu, problem: Problem, result: Fit, path: Path) -> Path:
+    settings = problem.settings
+    head = {
+        "FMU": f"{fmu.description.modelName} {fmu.description.version}",
+        "GUID": fmu.description.guid,
+        "measured": " ".join(str(source.path) for source in settings.sources),
+        "model": settings.model,
+        "error": settings.error,
+        "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
+        **{
+            name: with_unit(fmu.variables[name], value)
+            for name, value in settings.parameters(result.x).items()
+        },
+    }
+    columns = ["frequency [Hz]", "amplitude [m/s2]"]
+    columns += [f"{kind}_{part} [m/N]" for kind in ("measured", "fitted") for part in ("re", "im")]
+    columns += ["magnitude_error [%]", "phase_error [deg]"]
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        write_head(file, head, columns)
+        writer = csv.writer(file, lineterminator="\n")
+        for curve, H in zip(problem.curves, result.answer.curves):
+            errors = 100 * report.magnitude_error(curve, H), report.phase_error(curve, H)
+            parts = curve.H.real, curve.H.imag, H.real, H.imag
+            rows = zip(curve.frequency, curve.acceleration, *parts, *errors)
+            writer.writerows([repr(float(cell)) for cell in row] for row in rows)
+    return path
+
+
+class _Log:
+    """The log of the run: a file, with the time of each entry."""
+
+    def __init__(self, path: Path):
+        self._file = open(path, "w", encoding="utf-8")
+
+    def write(self, text: str) -> None:
+        """To the file alone."""
+        time_of_day = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+        self._file.write(f"{time_of_day}  {text}\n")
+        self._file.flush()
+
+    def say(self, text: str) -> None:
+        """To the file and to standard output."""
+        self._file.write(f"{text}\n")
+        print(text)
+
+    def __enter__(self) -> _Log:
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._file.close()

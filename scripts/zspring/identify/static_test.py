@@ -1,0 +1,81 @@
+"""Static test of the head suspension: force against displacement with the frame blocked.
+
+A CSV file with the columns
+
+    displacement [m or mm]  of the head against the blocked frame, upward, from the static state
+    force [N or kN]         on the head, positive upward as the displacement (a load cell in compression under
+                            the contact strip counts negative)
+    time [s]                may be missing: then the head moves with the speed of the settings
+
+in the order in which they were measured; the path begins in the static state at displacement 0. Means of both
+forces are taken off before they are compared, so the zero of the load cell does not matter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import ZSpringError
+from ..fmu import Instance
+from ..tables import finite_number, read_rows, split_label
+from ..variables import Value
+
+UNITS = {"displacement": {"m": 1.0, "mm": 1e-3}, "force": {"N": 1.0, "kN": 1e3}, "time": {"s": 1.0}}
+BLOCKED_FRAME = {"k2": 1e9, "k3": 1e9}  # N/m, so stiff that the frame moves less than a micrometre
+
+
+@dataclass(frozen=True)
+class StaticTest:
+    """Path of the head and the force on it."""
+
+    displacement: np.ndarray  # (n,) m, upward
+    force: np.ndarray  # (n,) N, upward on the head
+    duration: np.ndarray  # (n,) s, of the way to each point from the one before, the first from displacement 0
+
+    def simulated(self, instance: Instance, parameters: Mapping[str, Value]) -> np.ndarray:
+        """Force (n,) in N, upward on the head, that the FMU has on the same path."""
+        drive = instance.variables.parse_assignments(["drive=Displacement"])
+        instance.start({**parameters, **BLOCKED_FRAME, **drive})
+        time, forces = 0.0, []
+        for position, duration in zip(self.displacement.tolist(), self.duration.tolist()):
+            instance.set({"head_displacement": position})
+            instance.step(time, duration)
+            time += duration
+            forces += instance.get(["contact.force"])
+        return -np.array(forces)
+
+
+def read_static_test(path: Path, speed: float) -> StaticTest:
+    """The test of a file as described above; `speed` in m/s where it has no time.
+
+    Raises ZSpringError, with file, line and column, for missing columns or units, values that are not finite
+    and time that does not increase.
+    """
+    labels, rows = read_rows(path)
+    columns = {}
+    for index, (name, unit) in enumerate(map(split_label, labels)):
+        if name in UNITS:
+            if unit not in UNITS[name]:
+                units = " or ".join(UNITS[name])
+                raise ZSpringError(f"{path}, column {name!r}: unit [{unit or ''}]: must be {units}")
+            numbers = [finite_number(path, line, name, row[index]) for line, row in rows]
+            columns[name] = UNITS[name][unit] * np.array(numbers)
+    for name in ("displacement", "force"):
+        if name not in columns:
+            raise ZSpringError(f"{path}: no column {name!r}")
+    displacement = columns["displacement"]
+    if displacement.size < 3:
+        raise ZSpringError(f"{path}: needs at least three rows")
+    distance = np.abs(np.diff(displacement, prepend=0.0))
+    duration = np.maximum(distance / speed, 1e-3)
+    if "time" in columns:
+        steps = np.diff(columns["time"])
+        if np.any(steps <= 0):
+            line = rows[int(np.argmax(steps <= 0)) + 1][0]
+            raise ZSpringError(f"{path}, line {line}: time must increase")
+        duration[1:] = steps
+    return StaticTest(displacement, columns["force"], duration)
