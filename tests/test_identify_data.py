@@ -1,4 +1,4 @@
-"""What `zspring identify` reads: measured responses of every kind, static tests, settings; and what it refuses."""
+"""What `zspring identify` reads, measured responses, static tests and settings, and what it refuses."""
 
 from __future__ import annotations
 
@@ -86,9 +86,7 @@ def test_amplitudes_become_curves_and_displacements_become_accelerations(tmp_pat
 
 
 def test_a_contact_force_turns_the_sign_and_a_wrong_one_is_noticed(tmp_path):
-    path = write(
-        tmp_path / "a.csv", "frequency [Hz],real [m/N],imaginary [m/N]", FREQUENCY, -H.real, -H.imag
-    )
+    path = write(tmp_path / "a.csv", "frequency [Hz],real [m/N],imaginary [m/N]", FREQUENCY, -H.real, -H.imag)
     (wrong,) = read_curves(Source(path, amplitude=1.0))
     (right,) = read_curves(Source(path, amplitude=1.0, force="contact"))
     np.testing.assert_allclose(right.H, H, rtol=1e-12)
@@ -132,7 +130,12 @@ def universal_file(path: Path, value: np.ndarray, **fields) -> Path:
     return path
 
 
-UNITS = ("ordinate_spec_data_type", "ordinate_axis_units_lab", "orddenom_spec_data_type", "orddenom_axis_units_lab")
+UNITS = (
+    "ordinate_spec_data_type",
+    "ordinate_axis_units_lab",
+    "orddenom_spec_data_type",
+    "orddenom_axis_units_lab",
+)
 
 
 @pytest.mark.parametrize(
@@ -150,6 +153,26 @@ def test_universal_files_give_the_same_receptance(tmp_path, value, fields):
     (curve,) = read_curves(Source(path))
     np.testing.assert_allclose(curve.H, H, rtol=1e-6)  # the file has seven digits of some numbers
     np.testing.assert_allclose(curve.acceleration, 0.5)
+
+
+def test_a_universal_file_without_labels_uses_its_data_set_of_units(tmp_path):
+    """Data set 164 has factors from SI to the units of the file: mm and kN."""
+    path = universal_file(tmp_path / "a.uff", 1e6 * H, ordinate_axis_units_lab="", orddenom_axis_units_lab="")
+    text = path.read_text()
+    units = pyuff.prepare_164(
+        units_code=9,
+        units_description="mm, kN",
+        temp_mode=2,
+        length=1e3,
+        force=1e-3,
+        temp=1.0,
+        temp_offset=0.0,
+        return_full_dict=True,
+    )
+    pyuff.UFF(str(path)).write_sets([units], mode="overwrite")
+    path.write_text(path.read_text() + text)
+    (curve,) = read_curves(Source(path))
+    np.testing.assert_allclose(curve.H, H, rtol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -176,7 +199,10 @@ GOOD = "frequency [Hz],amplitude [m/s2],real [m/N],imaginary [m/N]\n1,0.5,1e-3,-
     [
         (GOOD.replace("real [m/N]", "real"), "column 'real' needs its unit"),
         (GOOD.replace("m/N", "furlong"), r"column 'real': unit \[furlong\]: must be one of m/N"),
-        (GOOD.replace("imaginary [m/N]", "imaginary [mm/N]"), r"column 'imaginary': unit \[mm/N\]: must be m/N"),
+        (
+            GOOD.replace("imaginary [m/N]", "imaginary [mm/N]"),
+            r"column 'imaginary': unit \[mm/N\]: must be m/N",
+        ),
         (GOOD.replace("m/s2", "rpm"), r"column 'amplitude': unit \[rpm\]"),
         (GOOD.replace("amplitude", "level"), "no column 'amplitude', and none given"),
         (GOOD.replace("frequency", "f"), "no column 'frequency'"),
@@ -252,7 +278,7 @@ def test_settings_give_the_parameters_of_every_x(tmp_path):
         ("min = 5000", "min = -1", "free.zspring.k: min = -1: the FMU allows min 0.001"),
         ("min = 5000, ", "", "free.zspring.k: min is missing"),
         ("max = 40000", 'max = "big"', "free.zspring.k: max = 'big': must be a number"),
-        ('"zspring"', '"spring"', "model = 'spring': must be \"linear\" or \"zspring\""),
+        ('"zspring"', '"spring"', 'model = \'spring\': must be "linear" or "zspring"'),
         ('"zspring"', '"linear"', "free.zspring.k: the linear model has only m1"),
         ("m1 = 7.5", "zspring.k = 7", "zspring.k is free, so it cannot be fixed, too"),
         ("m1 = 7.5", "m9 = 7", "no parameter 'm9'"),

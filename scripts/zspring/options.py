@@ -66,8 +66,8 @@ parameters_option = click.option(
     "--parameters",
     "parameter_set",
     metavar="NAME|FILE",
-    help="Set the parameters of a pantograph: the name of a set (`zspring info --sets` lists them) or an SSV file "
-    "of SSP 1.0. --set goes before it.",
+    help="Set the parameters of a pantograph: the name of a set (`zspring info --sets` lists them) or an "
+    "SSV file of SSP 1.0. --set goes before it.",
 )
 format_option = click.option(
     "--format",

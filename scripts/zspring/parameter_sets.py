@@ -1,7 +1,7 @@
 """Parameter sets as files of SSP 1.0: System Structure Parameter Values (SSV).
 
-The sets in this package are found by name, those of the user by path. Their descriptions say where the numbers
-come from and how far they are trusted; a parameter whose number is less certain than its set says so itself.
+The sets in this package are found by name, those of the user by path. Their descriptions say where the
+numbers come from and how far they are trusted; a parameter less certain than its set says so itself.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def packaged_sets() -> dict[str, Path]:
 
 
 def find_set(name_or_file: str) -> Path:
-    """The file of a set in this package, or the file of that path. Raises ZSpringError if there is neither."""
+    """The file of a set in this package, or that of a path. Raises ZSpringError if there is neither."""
     known = packaged_sets()
     if name_or_file in known:
         return known[name_or_file]

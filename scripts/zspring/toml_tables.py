@@ -26,7 +26,7 @@ def read_toml(path: Path) -> tuple[str, Table]:
 
 
 class Table:
-    """Typed look-ups in a TOML table that name the key they fail on; `finish` refuses keys nobody asked for."""
+    """Typed look-ups in a TOML table. `finish` refuses keys that nobody has asked for."""
 
     def __init__(self, content: Any, name: str):
         self._prefix = f"{name}: " if name else ""
@@ -57,9 +57,7 @@ class Table:
         self, key: str, default: Any = ..., above: float = -math.inf, least: float = -math.inf
     ) -> float:
         wanted = "a number" + (" above 0" if above == 0 else " of 0 or more" if least == 0 else "")
-        value = self._get(
-            key, default, wanted, lambda v: is_number(v) and v > above and v >= least
-        )
+        value = self._get(key, default, wanted, lambda v: is_number(v) and v > above and v >= least)
         return value if value is None else float(value)
 
     def integer(self, key: str, default: int, least: int) -> int:

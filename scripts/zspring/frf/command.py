@@ -18,7 +18,6 @@ from ..options import (
 )
 from .measure import BENCH_PARAMETERS, BENCHES, LOOK_PERIODS, FrfSettings
 from .quantities import QUANTITIES
-from .run import default_folder, run_frf
 
 STANDARD = FrfSettings()
 
@@ -140,6 +139,8 @@ def frf(
         raise click.BadParameter(
             f"{max_periods}: must not be below --min-periods {min_periods}", param_hint="--max-periods"
         )
+    from .run import default_folder, run_frf  # matplotlib is slow to load
+
     with opened(fmu_path) as fmu:
         parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=BENCH_PARAMETERS)
         settings = FrfSettings(

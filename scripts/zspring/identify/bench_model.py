@@ -64,9 +64,7 @@ class BenchModel:
         ]
         return [[task.result() for task in row] for row in tasks]
 
-    def static_forces(
-        self, candidates: Sequence[Mapping[str, Value]], test: StaticTest
-    ) -> list[np.ndarray]:
+    def static_forces(self, candidates: Sequence[Mapping[str, Value]], test: StaticTest) -> list[np.ndarray]:
         """For each candidate the forces (n,) in N of a static test, NaN if it failed."""
         tasks = [self._pool.submit(self._static, parameters, test) for parameters in candidates]
         return [task.result() for task in tasks]

@@ -43,7 +43,8 @@ def identify(settings_path, example, parameter_set, assignments, output, jobs, s
     """Fit parameters of the model to measured frequency responses.
 
     SETTINGS.toml names the measurements, the free parameters with start and bounds, those that are fixed or
-    tied, the band, the kind of error and the model. `zspring identify --example DIR` writes one to begin with.
+    tied, the band, the kind of error and the model. `zspring identify --example DIR` writes one to begin
+    with, which explains them all.
 
     Measurements are CSV files or universal files (data set 58): receptance, dynamic stiffness, mobility,
     accelerance, or the inverse of these two, with several amplitudes; a static test may join them.

@@ -3,8 +3,8 @@
 A CSV file has a line of column names with units, in any order, and may begin with lines of comment (#):
 
     frequency [Hz]      increasing within each amplitude
-    amplitude [UNIT]    peak of the imposed sine; the unit tells whether displacement, velocity or acceleration;
-                        may be missing where the settings give it
+    amplitude [UNIT]    peak of the imposed sine; the unit tells whether displacement, velocity or
+                        acceleration; may be missing where the settings give it
     real [UNIT], imaginary [UNIT], or magnitude [UNIT], phase [deg or rad]
                         the unit tells the kind of response, see `quantities`
 
@@ -152,9 +152,7 @@ def read_csv(path: Path, amplitude: float | None) -> list[Curve]:
                 f"{path}, line {rows[after][0]}: frequency = {frequency[after]:g} Hz after "
                 f"{frequency[before]:g} Hz: must increase within one amplitude"
             )
-        curves.append(
-            Curve(f"{step:g} {step_unit}", frequency[points], acceleration[points], H[points])
-        )
+        curves.append(Curve(f"{step:g} {step_unit}", frequency[points], acceleration[points], H[points]))
     return curves
 
 

@@ -28,10 +28,17 @@ def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], title: str
         points = {"color": color, "linestyle": "none", "marker": "o", "fillstyle": "none", "markersize": 3}
         line = {"color": color, "linewidth": 1.2}
         magnitude.semilogy(curve.frequency, np.abs(curve.H), **points)
-        magnitude.semilogy(curve.frequency, np.abs(H), label=curve.label, **line)
+        magnitude.semilogy(curve.frequency, np.abs(H), label=curve.label.replace("s2", "s²"), **line)
         phase.plot(curve.frequency, phase_degrees(curve.H, "receptance"), **points)
         phase.plot(curve.frequency, phase_degrees(H, "receptance"), **line)
-        error.plot(curve.frequency, 100 * magnitude_error(curve, H), marker=".", markersize=3, **line)
+        error.plot(
+            curve.frequency,
+            100 * magnitude_error(curve, H),
+            marker=".",
+            markersize=3,
+            color=color,
+            linewidth=0.6,
+        )
     handles = [
         Line2D([], [], color="gray", linestyle="none", marker="o", fillstyle="none", label="measured"),
         Line2D([], [], color="gray", label="fitted"),
@@ -53,7 +60,9 @@ def static_figure(test: StaticTest, force: np.ndarray, title: str) -> Figure:
     displacement = 1e3 * test.displacement
     axes.plot(displacement, test.force - test.force.mean(), "o", color="gray", markersize=3, label="measured")
     axes.plot(displacement, force - force.mean(), color="tab:blue", linewidth=1.2, label="fitted")
-    axes.set(title=title, xlabel="displacement of the head  [mm]", ylabel="force on the head, mean removed  [N]")
+    axes.set(
+        title=title, xlabel="displacement of the head  [mm]", ylabel="force on the head, mean removed  [N]"
+    )
     axes.grid(True, linewidth=0.4, alpha=0.5)
     axes.legend()
     return figure

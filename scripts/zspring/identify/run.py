@@ -26,7 +26,7 @@ from .fit import Fit, fit
 from .measured import in_band, read_curves, sign_warning
 from .plot import fit_figure, static_figure
 from .problem import ThreeMassModel, Problem, ZSpringModel
-from .search import CostRecord, search, thinned
+from .search import CostRecord, search
 from .settings import LINEAR_PARAMETERS, Settings
 from .static_test import read_static_test
 
@@ -39,14 +39,16 @@ def identify(fmu: Fmu, settings: Settings, folder: Path, suffix: str, jobs: int)
 
     suffix      of the figures, "png" or "svg"
     jobs        number of amplitudes measured at a time
-    Raises ZSpringError for bad data, FmuError when the FMU refuses the start values, Interrupted after Ctrl-C.
+    Raises ZSpringError for bad data, FmuError when the FMU refuses the start values, Interrupted after
+    Ctrl-C.
     """
-    curves = in_band([c for source in settings.sources for c in read_curves(source)], settings.band)
+    curves = [curve for source in settings.sources for curve in read_curves(source)]
     curves.sort(key=lambda curve: float(np.median(curve.acceleration)))
+    if settings.model == "linear":
+        curves = [curve for curve in curves if curve.label == curves[0].label]
+    curves = in_band(curves, settings.band)
     if warning := sign_warning(curves):
         print(warning, file=sys.stderr)
-    if settings.model == "linear":
-        curves = curves[:1]
     count = 2 * sum(curve.frequency.size for curve in curves)
     if count <= len(settings.free):
         raise ZSpringError(f"{count} measured numbers cannot determine {len(settings.free)} parameters")
@@ -104,15 +106,20 @@ def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[
     On a part of the points: the global search, then least squares from its best and from the start values.
     """
     settings = problem.settings
-    coarse = thinned(problem, settings.search.points)
-    files = [*(source.path for source in settings.sources), *([settings.static.path] if settings.static else [])]
+    coarse = problem.thinned(settings.search.points)
+    files = [
+        *(source.path for source in settings.sources),
+        *([settings.static.path] if settings.static else []),
+    ]
     head = {
         "FMU": fmu.sha256,
         "settings": repr(replace(settings, text="")),
         **{str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
     }
     record = CostRecord(folder / "search.partial.jsonl", head)
-    if record.found:
+    if record.is_stale:
+        print(f"{record.path} does not fit these settings and measurements: begun anew")
+    elif record.found:
         print(f"going on after {record.found} candidates in {record.path}")
     with tqdm(total=settings.search.generations, desc="search", unit=" generations", disable=None) as bar:
 
@@ -166,7 +173,9 @@ def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Valu
     remarks |= {name: f"tied to {to}" for name, (to, _) in settings.tied.items()}
     files = ", ".join(source.path.name for source in settings.sources)
     date = datetime.now(timezone.utc).strftime("%Y-%m-%d")
-    description = f"Identified from {files} on {date}, {settings.model} model; see {path.parent.name}/identify.log"
+    description = (
+        f"Identified from {files} on {date}, {settings.model} model; see {path.parent.name}/identify.log"
+    )
     write_set(path, fmu, {name: values[name] for name in names}, path.stem, description, remarks)
     return path
 

@@ -26,15 +26,17 @@ class CostRecord:
     def __init__(self, path: Path, head: Mapping[str, str]):
         self.path = path
         self._costs: dict[bytes, float] = {}
+        self.is_stale = False
         lines = []
         if path.exists():
             try:
                 first, *rest = path.read_text(encoding="utf-8").splitlines(keepends=True)
-                if json.loads(first) == dict(head):
+                self.is_stale = json.loads(first) != dict(head)
+                if not self.is_stale:
                     lines = [json.loads(line) for line in rest if line.endswith("\n")]
                     self._costs = {np.array(x).tobytes(): cost for *x, cost in lines}
             except (ValueError, TypeError):  # somebody changed the file
-                lines, self._costs = [], {}
+                lines, self._costs, self.is_stale = [], {}, True
         self.found = len(self._costs)
         path.parent.mkdir(parents=True, exist_ok=True)
         fresh = path.with_suffix(".new")
@@ -94,12 +96,3 @@ def search(
         callback=report,
     )
     return result.x
-
-
-def thinned(problem: Problem, points: int) -> Problem:
-    """The same problem with at most so many points of each curve, evenly over the measured ones."""
-    curves = [
-        curve.at(np.unique(np.linspace(0, len(curve.H) - 1, min(points, len(curve.H))).round().astype(int)))
-        for curve in problem.curves
-    ]
-    return problem.with_curves(curves)

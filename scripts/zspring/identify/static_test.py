@@ -34,7 +34,9 @@ class StaticTest:
 
     displacement: np.ndarray  # (n,) m, upward
     force: np.ndarray  # (n,) N, upward on the head
-    duration: np.ndarray  # (n,) s, of the way to each point from the one before, the first from displacement 0
+    duration: (
+        np.ndarray
+    )  # (n,) s, of the way to each point from the one before, the first from displacement 0
 
     def simulated(self, instance: Instance, parameters: Mapping[str, Value]) -> np.ndarray:
         """Force (n,) in N, upward on the head, that the FMU has on the same path."""

@@ -8,7 +8,6 @@ import click
 
 from ..options import chosen_parameters, fmu_option, format_option, opened, parameters_option, set_option
 from .inputs import read_inputs
-from .run import simulate as run_simulation
 
 
 @click.command()
@@ -56,6 +55,8 @@ def simulate(
 
     Writes simulation.csv with all outputs, and a figure. After Ctrl-C the rows so far are kept.
     """
+    from .run import simulate as run_simulation  # matplotlib is slow to load
+
     with opened(fmu_path) as fmu:
         assignments = [*assignments, *([f"drive={drive}"] if drive else [])]
         parameters = chosen_parameters(fmu, parameter_set, assignments)

@@ -55,7 +55,7 @@ def integrators(
     ode45 is), RK4, LSODA, Radau and CVODE, all compiled. Then time and step ratios against the rod inertia,
     beside the paper's; the stiff peers take their Jacobians by finite differences.
 
-    Writes integrators.csv, precision.png and inertia.png.
+    Takes about two minutes. Writes integrators.csv, precision.png and inertia.png.
 
     Ctrl-C keeps all finished runs, and the same command goes on from there.
     """
