@@ -102,7 +102,7 @@ class Problem:
         self.relative_step, self.tolerance = model.relative_step, model.tolerance
 
     def thinned(self, points: int) -> Problem:
-        """The same problem on a part: at most so many points of each curve, evenly, and steps of 2 ms or more.
+        """The same problem on a part: at most so many points of each curve, and steps of at least 2 ms.
 
         Good enough to find the right valley, ten or more times as fast.
         """

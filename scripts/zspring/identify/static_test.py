@@ -26,6 +26,9 @@ from ..variables import Value
 
 UNITS = {"displacement": {"m": 1.0, "mm": 1e-3}, "force": {"N": 1.0, "kN": 1e3}, "time": {"s": 1.0}}
 BLOCKED_FRAME = {"k2": 1e9, "k3": 1e9}  # N/m, so stiff that the frame moves less than a micrometre
+# From point to point. The FMU rounds a turn of the head over a few communication steps, so that the inertia
+# in it is over when the next point is reached.
+STEPS = 5
 
 
 @dataclass(frozen=True)
@@ -34,19 +37,18 @@ class StaticTest:
 
     displacement: np.ndarray  # (n,) m, upward
     force: np.ndarray  # (n,) N, upward on the head
-    duration: (
-        np.ndarray
-    )  # (n,) s, of the way to each point from the one before, the first from displacement 0
+    duration: np.ndarray  # (n,) s, of the way to each point from the one before, first from displacement 0
 
     def simulated(self, instance: Instance, parameters: Mapping[str, Value]) -> np.ndarray:
         """Force (n,) in N, upward on the head, that the FMU has on the same path."""
         drive = instance.variables.parse_assignments(["drive=Displacement"])
         instance.start({**parameters, **BLOCKED_FRAME, **drive})
-        time, forces = 0.0, []
-        for position, duration in zip(self.displacement.tolist(), self.duration.tolist()):
-            instance.set({"head_displacement": position})
-            instance.step(time, duration)
-            time += duration
+        time, position, forces = 0.0, 0.0, []
+        for target, duration in zip(self.displacement.tolist(), self.duration.tolist()):
+            for part in range(1, STEPS + 1):
+                instance.set({"head_displacement": position + (target - position) * part / STEPS})
+                instance.step(time + duration * (part - 1) / STEPS, duration / STEPS)
+            time, position = time + duration, target
             forces += instance.get(["contact.force"])
         return -np.array(forces)
 

@@ -7,7 +7,13 @@ import ctypes
 import numba
 import numpy as np
 from fmpy import sundials
-from fmpy.sundials.libraries import sundials_cvode, sundials_nvecserial
+from fmpy.sundials.libraries import (
+    sundials_core,
+    sundials_cvode,
+    sundials_nvecserial,
+    sundials_sunlinsoldense,
+    sundials_sunmatrixdense,
+)
 from numba import carray, types
 
 from .model import MODEL, SIZE, dynamics
@@ -57,14 +63,14 @@ class Cvode:
         # Failures come back as a status; nothing is to be printed.
         self._silent = sundials.SUNErrHandlerFn(lambda *_: None)
         sundials.SUNContext_PushErrHandler(self._context, self._silent, None)
-        self._y, tolerances = (sundials.N_VNew_Serial(SIZE, self._context) for _ in range(2))
+        self._y, self._tolerances = (sundials.N_VNew_Serial(SIZE, self._context) for _ in range(2))
         self._data = np.ctypeslib.as_array(sundials.NV_DATA_S(self._y), (SIZE,))
         self._data[:] = 0
-        np.ctypeslib.as_array(sundials.NV_DATA_S(tolerances), (SIZE,))[:] = atol
+        np.ctypeslib.as_array(sundials.NV_DATA_S(self._tolerances), (SIZE,))[:] = atol
         self._memory = ctypes.c_void_p(sundials.CVodeCreate(sundials.CV_BDF, self._context))
         right_side = ctypes.cast(_right_side.address, sundials.CVRhsFn)
         self._check(sundials.CVodeInit(self._memory, right_side, 0.0, self._y))
-        self._check(sundials.CVodeSVtolerances(self._memory, rtol, tolerances))
+        self._check(sundials.CVodeSVtolerances(self._memory, rtol, self._tolerances))
         self._matrix = sundials.SUNDenseMatrix(SIZE, SIZE, self._context)
         self._solver = sundials.SUNLinSol_Dense(self._y, self._matrix, self._context)
         self._check(sundials.CVodeSetLinearSolver(self._memory, self._solver, self._matrix))
@@ -88,6 +94,11 @@ class Cvode:
 
     def __exit__(self, *_) -> None:
         sundials.CVodeFree(ctypes.byref(self._memory))
+        sundials_sunlinsoldense.SUNLinSolFree_Dense(ctypes.c_void_p(self._solver))
+        sundials_sunmatrixdense.SUNMatDestroy_Dense(ctypes.c_void_p(self._matrix))
+        for vector in (self._y, self._tolerances):
+            sundials.N_VDestroy_Serial(vector)
+        sundials_core.SUNContext_Free(ctypes.byref(self._context))
 
     @staticmethod
     def _check(status: int) -> None:

@@ -24,9 +24,7 @@ from . import cvode
 from .model import MODEL, SIZE, dynamics, scales
 
 # Time of this thread alone is fair to long runs on a busy machine, but Windows counts it in steps of 16 ms.
-fine = time.get_clock_info("thread_time").resolution < 1e-6
-clock = time.thread_time if fine else time.perf_counter
-
+clock = time.thread_time if time.get_clock_info("thread_time").resolution < 1e-6 else time.perf_counter
 
 # In MB. CyRK limits the steps to what it could store, but it stores only those asked for.
 MEMORY_LIMIT = 1_000_000
@@ -34,7 +32,7 @@ MEMORY_LIMIT = 1_000_000
 
 @dataclass(frozen=True)
 class Run:
-    """One integration: states (times, 8), seconds in the solver, steps taken."""
+    """One integration: states (times, 8), seconds in the solver, accepted steps."""
 
     states: np.ndarray
     seconds: float
