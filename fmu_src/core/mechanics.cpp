@@ -107,7 +107,10 @@ Vector5 Mechanics::damping_force(const Vector5& v) const {
   return f;
 }
 
-double Mechanics::damping_power(const Vector5& v) const { return v.dot(damping_force(v)); }
+double Mechanics::damping_power(const Vector5& v) const {
+  const double v1 = v[U1] - v[U2], v2 = v[U2] - v[U3], v3 = v[U3];
+  return parameters.c1 * v1 * v1 + parameters.c2 * v2 * v2 + parameters.c3 * v3 * v3;
+}
 
 double Mechanics::kinetic_energy(const Vector5& v) const { return 0.5 * v.dot(mass.cwiseProduct(v)); }
 
