@@ -17,6 +17,7 @@ from .studies.linearize.command import linearize
 from .studies.mechanism.command import mechanism
 from .studies.newton.command import newton
 from .studies.static.command import static
+from .study.command import study
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -25,7 +26,7 @@ def commands() -> None:
     """DSA-380 pantograph with Z-spring head suspension, as an FMI 2.0 co-simulation FMU."""
 
 
-for command in (frf, simulate, identify, info, static, newton, integrators, mechanism, linearize):
+for command in (frf, simulate, identify, info, static, newton, integrators, mechanism, linearize, study):
     commands.add_command(command)
 
 

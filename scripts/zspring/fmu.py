@@ -42,12 +42,13 @@ def installed_fmu() -> Path:
 class Fmu:
     """An FMU unpacked into a temporary folder, a context manager that removes the folder.
 
-    path    the .fmu file; None is the one inside this package
+    path        the .fmu file; None is the one inside this package
+    unpack_in   where to make the temporary folder; None is the system's place for them
     `warnings` collects, each once, the log lines of all instances that came without a refusal.
     Raises ZSpringError if the file is no FMU for co-simulation on this platform.
     """
 
-    def __init__(self, path: Path | None = None):
+    def __init__(self, path: Path | None = None, unpack_in: Path | None = None):
         self.path = Path(path) if path else installed_fmu()
         self.warnings: list[str] = []
         try:
@@ -60,7 +61,9 @@ class Fmu:
             raise ZSpringError(f"{self.path} is no FMU for FMI 2.0 co-simulation")
         self.variables = Variables(self.description)
         # Windows keeps a library locked for a moment after it was unloaded.
-        self._temporary = tempfile.TemporaryDirectory(prefix="zspring-", ignore_cleanup_errors=True)
+        self._temporary = tempfile.TemporaryDirectory(
+            prefix="zspring-", dir=unpack_in, ignore_cleanup_errors=True
+        )
         self.folder = Path(self._temporary.name)
         fmpy.extract(self.path, self.folder)
 

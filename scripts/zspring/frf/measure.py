@@ -108,7 +108,7 @@ def measure(
     def work(bench: Bench) -> None:
         try:
             while not stop.is_set():
-                for result in _run(bench, waiting.get_nowait(), settings, stop):
+                for result in run_sweep(bench, waiting.get_nowait(), settings, stop):
                     finished.put(result)
         except queue.Empty:
             pass
@@ -136,7 +136,7 @@ def measure(
             raise
 
 
-def _run(
+def run_sweep(
     bench: Bench, sweep: Sweep, settings: FrfSettings, stop: threading.Event
 ) -> Iterator[tuple[FrfPoint, dict[str, Any] | None]]:
     """The points of one sweep, until `stop` is set; after a failed one it goes on from rest."""

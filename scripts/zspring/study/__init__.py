@@ -1,0 +1,1 @@
+"""Parameter studies: many cases on local processes or a Dask cluster."""

@@ -1,0 +1,87 @@
+"""The command `zspring study`."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from pathlib import Path
+
+import click
+
+from ..errors import ZSpringError
+from ..options import fmu_option, format_option, opened
+
+NEEDED = ("distributed", "SALib", "pyarrow")
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+@click.option(
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Folder of the results.  [default: results/study-NAME, by the name of FILE]",
+)
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Run on the Dask cluster with this scheduler, e.g. tcp://host:8786, instead of local processes. Its "
+    "workers need distributed, fmpy, numpy and the Python version from here; FMU and code are sent to them.",
+)
+@click.option(
+    "--workers",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Local processes.  [default: number of processors]",
+)
+@click.option(
+    "--timeout",
+    type=click.FloatRange(min=0, min_open=True),
+    default=30.0,
+    show_default=True,
+    help="Longest wait in s for the scheduler, and for a worker when there is none.",
+)
+@click.option("--parquet", is_flag=True, help="Write the results as study.parquet, too, at the end.")
+@format_option
+@fmu_option
+def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path) -> None:
+    """Run the parameter study that the TOML file FILE describes.
+
+    \b
+        design = "sobol"           # grid, list, latin-hypercube or sobol
+        samples = 64               # sobol: N for N (D + 2) cases
+        seed = 1
+        [vary]                     # parameters of the FMU, in its units
+        zspring.k = { from = 12000, to = 14000 }
+        zspring.Mf = { from = 0.2, to = 0.4, scale = "log" }
+        [set]                      # common to all cases
+        friction = "Coulomb"
+        [frf]                      # what to compute: the FRF by amplitude (options of `zspring frf`) ...
+        amplitudes = [1, 4]        # m/s2
+        frequencies = "3:9:0.25"   # Hz
+        resonance_band = [3, 9]    # Hz, where the highest resonance is looked for
+        [static]                   # ... and/or the static stiffness of the suspension
+        amplitudes = [0.02]        # m
+
+    A grid takes values ([1, 2, 3] or a range with its count) and makes all combinations; a list takes the
+    first value of each parameter, then the second of each, and so on.
+
+    Each result is a row of study.csv as soon as it is there. After Ctrl-C, or whatever else ended the study,
+    the same command goes on. A case that fails is recorded with its reason. Writes summary figures, too.
+    """
+    absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    if absent:
+        raise ZSpringError(f"{', '.join(absent)} not installed: pip install {' '.join(absent)}")
+    from .run import run_study
+
+    with opened(fmu_path) as fmu:
+        run_study(
+            fmu,
+            file,
+            output or Path("results") / f"study-{file.stem}",
+            scheduler,
+            workers or os.cpu_count() or 1,
+            timeout,
+            suffix,
+            parquet,
+        )

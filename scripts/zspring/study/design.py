@@ -1,0 +1,60 @@
+"""Designs of experiments: from what varies to cases."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from ..errors import ZSpringError
+from ..variables import Value
+from .settings import StudySettings
+
+MOST_CASES = 1_000_000
+
+Case = dict[str, Value]  # values of the parameters that vary
+
+
+def make_cases(settings: StudySettings) -> list[Case]:
+    """All cases of a study, the same for the same settings.
+
+    grid                every combination, the last parameter changing fastest
+    list                the first value of each parameter, the second of each, ...
+    latin-hypercube     McKay, Beckman, Conover 1979, as scipy.stats.qmc has it
+    sobol               Saltelli et al. 2010 on a scrambled Sobol sequence, as SALib has it: blocks of D + 2
+                        cases, from which first and total order indices follow
+    Raises ZSpringError if there are more than MOST_CASES.
+    """
+    names, varied = list(settings.vary), list(settings.vary.values())
+    dimension = len(varied)
+    count = {
+        "grid": lambda: math.prod(map(len, varied)),
+        "list": lambda: len(varied[0]),
+        "latin-hypercube": lambda: settings.samples,
+        "sobol": lambda: settings.samples * (dimension + 2),
+    }[settings.design]()
+    if count > MOST_CASES:
+        raise ZSpringError(f"{count} cases: a study has at most {MOST_CASES}")
+    if settings.design in ("grid", "list"):
+        rows = itertools.product(*varied) if settings.design == "grid" else zip(*varied)
+        return [dict(zip(names, row)) for row in rows]
+
+    if settings.design == "sobol":
+        from SALib.sample import sobol
+
+        positions = sobol.sample(
+            unit_problem(names), settings.samples, calc_second_order=False, seed=settings.seed
+        )
+    else:
+        from scipy.stats import qmc
+
+        sampler = qmc.LatinHypercube(dimension, rng=np.random.default_rng(settings.seed))
+        positions = sampler.random(settings.samples)
+    columns = [span.at(column).tolist() for span, column in zip(varied, positions.T)]
+    return [dict(zip(names, row)) for row in zip(*columns)]
+
+
+def unit_problem(names: list[str]) -> dict:
+    """SALib's description of parameters that are positions between 0 and 1."""
+    return {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
