@@ -246,4 +246,4 @@ def test_a_missing_extra_is_named(missing):
         [sys.executable, "-c", code, "integrators"], capture_output=True, text=True, timeout=60
     )
     assert done.returncode == 1
-    assert done.stderr == f"zspring: {missing} is missing: pip install 'zspring[integrators]'\n"
+    assert done.stderr == f"zspring: {missing} not installed: in the clone, pip install '.[integrators]'\n"

@@ -15,3 +15,8 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     by_lower = {other.lower(): other for other in known}
     close = difflib.get_close_matches(name.lower(), by_lower, n=2, cutoff=0.6)
     return f"; did you mean {' or '.join(by_lower[other] for other in close)}?" if close else ""
+
+
+def missing_extra(packages: Iterable[str], extra: str) -> ZSpringError:
+    """What to tell when packages of an extra of pyproject.toml are not installed."""
+    return ZSpringError(f"{', '.join(packages)} not installed: in the clone, pip install '.[{extra}]'")

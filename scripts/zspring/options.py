@@ -79,6 +79,18 @@ format_option = click.option(
 )
 
 
+def output_option(default: str = "", described: str = ""):
+    """--output DIR with this default; `described` says in words what one is that the settings decide."""
+    return click.option(
+        "--output",
+        type=click.Path(path_type=Path, file_okay=False),
+        default=Path(default) if default else None,
+        show_default=bool(default),
+        metavar="DIR",
+        help="Folder of the results." + (f"  [default: {described}]" if described else ""),
+    )
+
+
 @contextmanager
 def opened(path: Path | None) -> Iterator[Fmu]:
     """The FMU for one command, which tells at its end what the FMU warned of."""

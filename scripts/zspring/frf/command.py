@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
-
 import click
 
 from ..options import (
@@ -13,6 +11,7 @@ from ..options import (
     fmu_option,
     format_option,
     opened,
+    output_option,
     parameters_option,
     set_option,
 )
@@ -53,12 +52,9 @@ STANDARD = FrfSettings()
     show_default=True,
     help="What to draw: receptance H = -Z/F or dynamic stiffness 1/H.",
 )
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Folder of the results.  [default: results/frf-FRICTION-DIRECTION, and a code for the "
-    "settings where they differ from the standard figure's]",
+@output_option(
+    described="results/frf-FRICTION-DIRECTION, and a code for the settings where they differ from the standard "
+    "figure's"
 )
 @click.option(
     "--tolerance",

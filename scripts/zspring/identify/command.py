@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from ..errors import ZSpringError
-from ..options import fmu_option, format_option, opened, parameters_option, set_option
+from ..options import fmu_option, format_option, opened, output_option, parameters_option, set_option
 
 EXAMPLE = ("identify.toml", "bench.csv")
 
@@ -25,12 +25,7 @@ EXAMPLE = ("identify.toml", "bench.csv")
 )
 @parameters_option
 @set_option
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Folder of the results.  [default: results/identify-SETTINGS]",
-)
+@output_option(described="results/identify-SETTINGS")
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),

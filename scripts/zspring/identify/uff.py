@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import ZSpringError
+from ..errors import ZSpringError, missing_extra
 from .measured import Curve
 from .quantities import Response
 
@@ -35,7 +35,7 @@ def read_uff(path: Path, amplitude: float | None) -> list[Curve]:
     try:
         import pyuff
     except ImportError:
-        raise ZSpringError("universal files need the package pyuff: pip install 'zspring[uff]'") from None
+        raise missing_extra(["pyuff"], "uff") from None
     if not path.is_file():
         raise ZSpringError(f"{path}: no such file")
     try:

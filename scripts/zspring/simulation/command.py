@@ -6,7 +6,15 @@ from pathlib import Path
 
 import click
 
-from ..options import chosen_parameters, fmu_option, format_option, opened, parameters_option, set_option
+from ..options import (
+    chosen_parameters,
+    fmu_option,
+    format_option,
+    opened,
+    output_option,
+    parameters_option,
+    set_option,
+)
 from .inputs import read_inputs
 
 
@@ -38,14 +46,7 @@ from .inputs import read_inputs
     help="Stop time in s.  [default: where the inputs end; without inputs that of the FMU]",
 )
 @click.option("--step", type=float, metavar="H", help="Communication step in s.  [default: that of the FMU]")
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("results/simulation"),
-    show_default=True,
-    metavar="DIR",
-    help="Folder of the results.",
-)
+@output_option("results/simulation")
 @format_option
 @fmu_option
 def simulate(

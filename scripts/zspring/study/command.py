@@ -8,20 +8,15 @@ from pathlib import Path
 
 import click
 
-from ..errors import ZSpringError
-from ..options import fmu_option, format_option, opened
+from ..errors import missing_extra
+from ..options import fmu_option, format_option, opened, output_option
 
 NEEDED = ("distributed", "SALib", "pyarrow")
 
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Folder of the results.  [default: results/study-NAME, by the name of FILE]",
-)
+@output_option(described="results/study-NAME, by the name of FILE")
 @click.option(
     "--scheduler",
     metavar="ADDRESS",
@@ -71,7 +66,7 @@ def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path) 
     """
     absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if absent:
-        raise ZSpringError(f"{', '.join(absent)} not installed: pip install {' '.join(absent)}")
+        raise missing_extra(absent, "study")
     from .run import run_study
 
     with opened(fmu_path) as fmu:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
-from ...errors import ZSpringError
-from ...options import chosen_parameters, fmu_option, format_option, opened, parameters_option, set_option
+from ...errors import missing_extra
+from ...options import (
+    chosen_parameters,
+    fmu_option,
+    format_option,
+    opened,
+    output_option,
+    parameters_option,
+    set_option,
+)
 
 POSITIVE = click.FloatRange(min=0, min_open=True)
 
@@ -36,14 +42,7 @@ POSITIVE = click.FloatRange(min=0, min_open=True)
 @click.option("--quick", is_flag=True, help="A few variants only, to try it out.")
 @parameters_option
 @set_option
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("results/integrators"),
-    show_default=True,
-    metavar="DIR",
-    help="Folder of the results.",
-)
+@output_option("results/integrators")
 @format_option
 @fmu_option
 def integrators(
@@ -65,7 +64,7 @@ def integrators(
         package = (error.name or "").partition(".")[0]
         if package not in ("numba", "CyRK"):
             raise
-        raise ZSpringError(f"{package} is missing: pip install 'zspring[integrators]'") from None
+        raise missing_extra([package], "integrators") from None
     with opened(fmu_path) as fmu:
         parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=SET_BY_THE_STUDY)
         run_integrators(fmu, parameters, frequency, acceleration, periods, rounds, quick, output, suffix)

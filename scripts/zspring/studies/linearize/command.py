@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
-from ...options import Numbers, chosen_parameters, fmu_option, opened, parameters_option, set_option
+from ...options import Numbers, chosen_parameters, fmu_option, opened, output_option, parameters_option, set_option
 
 
 @click.command()
@@ -20,14 +18,7 @@ from ...options import Numbers, chosen_parameters, fmu_option, opened, parameter
 )
 @parameters_option
 @set_option
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("results/linearize"),
-    show_default=True,
-    metavar="DIR",
-    help="Folder of the results.",
-)
+@output_option("results/linearize")
 @fmu_option
 def linearize(frequencies, parameter_set, assignments, output, fmu_path) -> None:
     """Print and write the linear models about the static state: modes, matrices, receptance.

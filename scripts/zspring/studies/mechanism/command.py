@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
 from ...options import (
@@ -12,6 +10,7 @@ from ...options import (
     fmu_option,
     format_option,
     opened,
+    output_option,
     parameters_option,
     set_option,
 )
@@ -31,14 +30,7 @@ from ...options import (
 )
 @parameters_option
 @set_option
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("results/mechanism"),
-    show_default=True,
-    metavar="DIR",
-    help="Folder of the results.",
-)
+@output_option("results/mechanism")
 @format_option
 @fmu_option
 def mechanism(frequency, accelerations, parameter_set, assignments, output, suffix, fmu_path) -> None:

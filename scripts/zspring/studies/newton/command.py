@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
 from ...frf.measure import FrfSettings
@@ -13,6 +11,7 @@ from ...options import (
     fmu_option,
     format_option,
     opened,
+    output_option,
     parameters_option,
     set_option,
 )
@@ -69,14 +68,7 @@ SET_HERE = (
 )  # fmt: skip
 @parameters_option
 @set_option
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("results/newton"),
-    show_default=True,
-    metavar="DIR",
-    help="Folder of the results.",
-)
+@output_option("results/newton")
 @format_option
 @fmu_option
 def newton(

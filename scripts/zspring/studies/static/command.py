@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
 from ...options import (
@@ -12,6 +10,7 @@ from ...options import (
     fmu_option,
     format_option,
     opened,
+    output_option,
     parameters_option,
     set_option,
 )
@@ -37,14 +36,7 @@ from .loops import SET_HERE
 )
 @parameters_option
 @set_option
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("results/static"),
-    show_default=True,
-    metavar="DIR",
-    help="Folder of the results.",
-)
+@output_option("results/static")
 @format_option
 @fmu_option
 def static(amplitudes, rates, parameter_set, assignments, output, suffix, fmu_path) -> None:
