@@ -4,7 +4,6 @@ namespace zspring {
 
 MotionState MotionState::variation() const {
   MotionState d;
-  d.length = length;
   d.positions = positions;
   d.curvatures = curvatures;
   std::fill_n(d.positions.value, Samples::most, 0.0);
@@ -14,7 +13,6 @@ MotionState MotionState::variation() const {
 
 ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, double length)
     : start_(start), end_(start), input_(input), length_(length) {
-  end_.length = length;
   end_.position = position(length);
   if (start.positions.count == 0)
     for (int i = 0; i + 1 < Samples::most; ++i) end_.positions.append(length, start.position);
@@ -22,7 +20,7 @@ ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, doub
 
   if (input.has_curvature) {
     Samples& given = end_.curvatures;
-    given.append(start.length, input.curvature);
+    given.append(start.positions.last_length, input.curvature);
     given.count = std::min(given.count, 3.0);
     // What was seen over short steps tells nothing of the end of a much longer one.
     if (given.count > 1 && length <= 2 * given.age[1])

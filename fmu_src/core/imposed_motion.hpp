@@ -21,7 +21,6 @@ struct MotionState {
   double position = 0;      // m
   double velocity = 0;      // m/s
   double acceleration = 0;  // m/s2
-  double length = 0;        // s, of the last step
   Samples positions;        // empty before the first step: at rest until then
   Samples curvatures;       // as given for the last steps, at their begin
 
@@ -30,7 +29,7 @@ struct MotionState {
 
 template <class Visitor>
 void visit(MotionState& m, Visitor&& f) {
-  f(m.position), f(m.velocity), f(m.acceleration), f(m.length);
+  f(m.position), f(m.velocity), f(m.acceleration);
   visit(m.positions, f);
   visit(m.curvatures, f);
 }

@@ -4,7 +4,6 @@
 // `static_force`; angles in rad. There are no default values here: modelDescription.xml holds them.
 #pragma once
 
-#include <cstdint>
 #include <stdexcept>
 
 namespace zspring {

@@ -68,6 +68,12 @@ class Fmu:
         fmpy.extract(self.path, self.folder)
 
     @property
+    def identity(self) -> dict[str, str]:
+        """Model, version and GUID, for the head of a file."""
+        description = self.description
+        return {"FMU": f"{description.modelName} {description.version}", "GUID": description.guid}
+
+    @property
     def sha256(self) -> str:
         """Hash of the file, which tells two builds apart."""
         return hashlib.sha256(self.path.read_bytes()).hexdigest()

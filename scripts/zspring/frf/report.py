@@ -23,11 +23,9 @@ def file_head(
 
     `parameters` are all parameters of the FMU, calculated ones included.
     """
-    description = fmu.description
     head = {
         "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        "FMU": f"{description.modelName} {description.version}",
-        "GUID": description.guid,
+        **fmu.identity,
         "SHA-256 of the FMU": fmu.sha256,
         "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
         "quantity": "receptance H" if quantity == "receptance" else "dynamic stiffness 1/H",

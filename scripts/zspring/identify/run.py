@@ -183,8 +183,7 @@ def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Valu
 def _write_points(fmu: Fmu, problem: Problem, result: Fit, path: Path) -> Path:
     settings = problem.settings
     head = {
-        "FMU": f"{fmu.description.modelName} {fmu.description.version}",
-        "GUID": fmu.description.guid,
+        **fmu.identity,
         "measured": " ".join(str(source.path) for source in settings.sources),
         "model": settings.model,
         "error": settings.error,

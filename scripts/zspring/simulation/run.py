@@ -110,10 +110,8 @@ class _Feed:
 
 def _head(fmu: Fmu, parameters: Mapping[str, Value]) -> dict[str, str]:
     """FMU and parameters, calculated ones included, for the head of the file."""
-    description = fmu.description
     return {
-        "FMU": f"{description.modelName} {description.version}",
-        "GUID": description.guid,
+        **fmu.identity,
         "synthetic": " ".join(fmu.variables.synthetic(parameters)),
         **{name: with_unit(fmu.variables[name], value) for name, value in parameters.items()},
     }

@@ -14,8 +14,7 @@ from ..variables import Value, with_unit
 def study_head(fmu: Fmu, parameters: Mapping[str, Value], settings: Mapping[str, str]) -> dict[str, str]:
     """Head of a file: the FMU, the study's own settings, the FMU's parameters with their units."""
     return {
-        "FMU": f"{fmu.description.modelName} {fmu.description.version}",
-        "GUID": fmu.description.guid,
+        **fmu.identity,
         **settings,
         "synthetic": " ".join(fmu.variables.synthetic(parameters)),
         **{name: with_unit(fmu.variables[name], value) for name, value in parameters.items()},

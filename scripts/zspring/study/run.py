@@ -175,11 +175,9 @@ def _all_parameters(fmu: Fmu, settings: StudySettings, cases: list[Case]) -> dic
 
 def _head(fmu: Fmu, settings: StudySettings, parameters: dict[str, Value], cases: int) -> dict[str, str]:
     """Everything that defines the numbers of the study, and the date (UTC)."""
-    description = fmu.description
     return {
         "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        "FMU": f"{description.modelName} {description.version}",
-        "GUID": description.guid,
+        **fmu.identity,
         "SHA-256 of the FMU": fmu.sha256,
         "cases": str(cases),
         **settings.described(fmu.variables),
