@@ -1,4 +1,4 @@
-"""Makes the C++ table of variables and the final model description from modelDescription.xml.
+"""Makes the C++ table of variables and the final model description from a model description.
 
     python generate_variables.py modelDescription.xml OUT_DIR
 
@@ -24,9 +24,19 @@ def enumerations(root):
     }
 
 
+def identifier_and_index(name):
+    """C++ identifier shared by the elements of an array, and the element's place from 0: "a[2].b" is (a_dot_b, 1)."""
+    parts = re.fullmatch(r"([^\[\]]*)(?:\[(\d+)\]([^\[\]]*))?", name)
+    if not parts:
+        sys.exit(f"modelDescription.xml: {name}: only arrays of one dimension are supported")
+    head, index, tail = parts.groups(default="")
+    return (head + tail).replace(".", "_dot_"), int(index or 1) - 1
+
+
 def row(index, variable, enums):
-    """One X(...) line of the table: identifier, name, type, causality, tunable, unit, start, min, max, allowed."""
+    """One X(...) line of the table, its columns as in the heading that main writes."""
     name = variable.get("name")
+    identifier, element = identifier_and_index(name)
     value = variable[0]
     if variable.get("valueReference") != str(index):
         sys.exit(f"modelDescription.xml: {name}: valueReference must be {index}, its place in the list")
@@ -41,7 +51,7 @@ def row(index, variable, enums):
                 sys.exit(f"modelDescription.xml: {name}: start = {start} is outside its bound {bound}")
     causality = variable.get("causality")
     return (
-        f'  X({name.replace(".", "_dot_")}, "{name}", {value.tag}, {causality[0].upper()}{causality[1:]}, '
+        f'  X({identifier}, {element}, "{name}", {value.tag}, {causality[0].upper()}{causality[1:]}, '
         f'{str(variable.get("variability") == "tunable").lower()}, "{value.get("unit", "")}", {start or 0}, '
         f'{low or "-" + UNBOUNDED}, {high or UNBOUNDED}, "{", ".join(items)}")'
     )
@@ -56,12 +66,15 @@ def main(source, out_dir):
     root = ET.fromstring(text)
     enums = enumerations(root)
     rows = [row(i, v, enums) for i, v in enumerate(root.find("ModelVariables"))]
+    identifiers = dict.fromkeys(identifier_and_index(v.get("name"))[0] for v in root.find("ModelVariables"))
     categories = [f'  X({c.get("name")})' for c in root.iter("Category")]
     table = [
         "// Generated from modelDescription.xml.",
         f'#define ZSPRING_GUID "{guid}"',
         f'#define ZSPRING_MODEL_IDENTIFIER "{root.find("CoSimulation").get("modelIdentifier")}"',
-        "// identifier, name, type, causality, tunable, unit, start, min, max, allowed values of an enumeration",
+        "#define ZSPRING_IDENTIFIERS(X) \\",
+        " \\\n".join(f"  X({identifier})" for identifier in identifiers),
+        "// identifier, index, name, type, causality, tunable, unit, start, min, max, items of an enumeration",
         "#define ZSPRING_VARIABLES(X) \\",
         " \\\n".join(rows),
         "#define ZSPRING_LOG_CATEGORIES(X) \\",

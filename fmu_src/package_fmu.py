@@ -1,6 +1,8 @@
 """Package the FMU: model description, binaries, documentation, licences and icon in one zip.
 
-    python package_fmu.py MODEL_DESCRIPTION FMU PLATFORM=LIBRARY...
+    python package_fmu.py MODEL_DESCRIPTION MODEL_RESOURCES FMU PLATFORM=LIBRARY...
+
+MODEL_RESOURCES is the folder of documentation.html, a template for the tables, and of the icon model.png.
 
 The same content gives the same bytes: entries are sorted and carry a fixed time.
 """
@@ -14,7 +16,7 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-RESOURCES = ROOT / "resources"
+LICENSES = ROOT / "resources" / "licenses"
 
 # In the order of the documentation: (causality, heading)
 CAUSALITIES = [
@@ -27,8 +29,8 @@ CAUSALITIES = [
 
 def licenses() -> str:
     """The project's licence and those of what is compiled into the library."""
-    parts = [("ZSpringPantograph", ROOT / "LICENSE")]
-    parts += [(f"Built in: {p.stem}", p) for p in sorted((RESOURCES / "licenses").glob("*.txt"))]
+    parts = [("This FMU", ROOT / "LICENSE")]
+    parts += [(f"Built in: {p.stem}", p) for p in sorted(LICENSES.glob("*.txt"))]
     rule = "=" * 78
     texts = [f"{rule}\n{title}\n{rule}\n\n{path.read_text('utf-8').strip()}\n" for title, path in parts]
     return "\n\n".join(texts)
@@ -99,10 +101,10 @@ def enumeration_tables(model: ET.Element) -> str:
     return "\n".join(parts)
 
 
-def documentation(model_description: Path) -> str:
+def documentation(model_description: Path, resources: Path) -> str:
     """The page documentation/index.html, with its tables made from the model description."""
     model = ET.parse(model_description).getroot()
-    template = string.Template((RESOURCES / "documentation.html").read_text("utf-8"))
+    template = string.Template((resources / "documentation.html").read_text("utf-8"))
     return template.substitute(
         version=html.escape(model.get("version")),
         variables=variable_tables(model),
@@ -110,12 +112,12 @@ def documentation(model_description: Path) -> str:
     )
 
 
-def write_fmu(model_description: Path, fmu: Path, libraries: dict[str, Path]) -> None:
+def write_fmu(model_description: Path, resources: Path, fmu: Path, libraries: dict[str, Path]) -> None:
     """Write the FMU; `libraries` maps FMI platform names to shared libraries. Never leaves half a file."""
     entries = {
         "modelDescription.xml": model_description.read_bytes(),
-        "model.png": (RESOURCES / "model.png").read_bytes(),
-        "documentation/index.html": documentation(model_description).encode(),
+        "model.png": (resources / "model.png").read_bytes(),
+        "documentation/index.html": documentation(model_description, resources).encode(),
         "documentation/licenses/license.txt": licenses().encode(),
     }
     for platform, library in libraries.items():
@@ -142,10 +144,11 @@ def library_argument(text: str) -> tuple[str, Path]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("model_description", type=Path)
+    parser.add_argument("resources", type=Path)
     parser.add_argument("fmu", type=Path)
     parser.add_argument("libraries", type=library_argument, nargs="+", metavar="PLATFORM=LIBRARY")
     arguments = parser.parse_args()
-    write_fmu(arguments.model_description, arguments.fmu, dict(arguments.libraries))
+    write_fmu(arguments.model_description, arguments.resources, arguments.fmu, dict(arguments.libraries))
 
 
 if __name__ == "__main__":

@@ -37,8 +37,8 @@ bool same_type(Type a, Type b) {
 }  // namespace
 
 const Variable& Instance::variable(unsigned reference, Type type) const {
-  if (reference >= vr::count)
-    refuse("value reference %u: must be below %u", reference, static_cast<unsigned>(vr::count));
+  if (reference >= variable_count)
+    refuse("value reference %u: must be below %u", reference, variable_count);
   const Variable& v = variables[reference];
   if (!same_type(v.type, type)) refuse("%s: is of type %s, not %s", v.name, type_name(v.type), type_name(type));
   return v;
@@ -46,12 +46,11 @@ const Variable& Instance::variable(unsigned reference, Type type) const {
 
 void Instance::reset() {
   phase = Instantiated;
-  for (const Variable& v : variables) {
-    if (v.binding.set_parameter) v.binding.set_parameter(parameters_, v.start);
-  }
+  for (const Variable& v : variables)
+    if (v.is_parameter()) v.set(parameters_, v.start);
   inputs_ = {};
   for (const Variable& v : variables)
-    if (v.binding.input) v.binding.input(inputs_).value = v.start;
+    if (v.is_input()) v.signal(inputs_).value = v.start;
   experiment_ = {};
   time_ = 0;
   stepped_ = false;
@@ -75,10 +74,8 @@ void Instance::exit_initialization() {
 }
 
 void Instance::terminate() {
-  const Outputs y = simulation().outputs();
   char text[160];
-  std::snprintf(text, sizeof text, "%.0f steps, %.3g iterations a step, at most %.0f, %.0f refinements", y.steps,
-                y.steps > 0 ? y.iterations / y.steps : 0, y.iterations_max, y.refinements);
+  simulation().describe_run(text, sizeof text);
   log.write(fmi2OK, Category::logSolver, text);
   phase = Terminated;
 }
@@ -86,20 +83,26 @@ void Instance::terminate() {
 Simulation& Instance::simulation() {
   if (!simulation_) {
     simulation_.emplace(parameters_, inputs_);
+    modelled_ = parameters_;
     outputs_.reset();
   }
   return *simulation_;
 }
 
+bool Instance::is_model_of(const Parameters& p) const {
+  return std::all_of(std::begin(variables), std::end(variables), [&](const Variable& v) {
+    return !v.is_parameter() || v.tunable || v.get(modelled_) == v.get(p);
+  });
+}
+
 double Instance::get(unsigned reference, Type type) {
   const Variable& v = variable(reference, type);
-  const Binding& b = v.binding;
-  if (b.parameter) return b.parameter(parameters_);
-  if (b.input) return b.input(inputs_).value;
-  if (b.calculated) return b.calculated(simulation().stiffness());
+  if (v.is_parameter()) return v.get(parameters_);
+  if (v.is_input()) return v.signal(inputs_).value;
+  if (v.binding.calculated) return v.get(simulation().calculated());
   Simulation& s = simulation();
   if (!outputs_) outputs_ = s.outputs();
-  const double y = b.output(*outputs_);
+  const double y = v.get(*outputs_);
   return type == Type::Real ? y : std::min<double>(y, std::numeric_limits<fmi2Integer>::max());
 }
 
@@ -117,11 +120,11 @@ void Instance::set(const fmi2ValueReference references[], size_t n, Type type, c
     check_value(v, values[i]);
   }
   for (size_t i = 0; i < n; ++i) {
-    const Binding& b = variables[references[i]].binding;
-    if (b.set_parameter)
-      b.set_parameter(parameters_, values[i]);
+    const Variable& v = variables[references[i]];
+    if (v.is_parameter())
+      v.set(parameters_, values[i]);
     else
-      b.input(inputs_).value = values[i];
+      v.signal(inputs_).value = values[i];
   }
   if (phase & (Instantiated | Initialization)) simulation_.reset();
 }
@@ -130,13 +133,13 @@ void Instance::set_input_derivatives(const fmi2ValueReference references[], size
                                      const double values[]) {
   for (size_t i = 0; i < n; ++i) {
     const Variable& v = variable(references[i], Type::Real);
-    if (!v.binding.input) refuse("%s: is no input and has no input derivatives", v.name);
+    if (!v.is_input()) refuse("%s: is no input and has no input derivatives", v.name);
     if (orders[i] != 1 && orders[i] != 2) refuse("%s: derivative of order %d; must be 1 or 2", v.name, orders[i]);
     if (!std::isfinite(values[i]))
       refuse("%s: derivative of order %d = %g: must be a finite number", v.name, orders[i], values[i]);
   }
   for (size_t i = 0; i < n; ++i) {
-    Signal& s = variables[references[i]].binding.input(inputs_);
+    Signal& s = variables[references[i]].signal(inputs_);
     (orders[i] == 1 ? s.rate : s.curvature) = values[i];
     s.has_derivatives = true;
     if (orders[i] == 2) s.has_curvature = true;
@@ -147,7 +150,7 @@ double Instance::output_derivative(unsigned reference, int order) {
   const Variable& v = variable(reference, Type::Real);
   if (!v.binding.output) refuse("%s: is no output and has no output derivatives", v.name);
   if (order != 1) refuse("%s: derivative of order %d; must be 1", v.name, order);
-  return v.binding.output(simulation().output_rates());
+  return v.get(simulation().output_rates());
 }
 
 void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown,
@@ -156,19 +159,19 @@ void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t
   Inputs change;
   for (size_t i = 0; i < n_known; ++i) {
     const Variable& v = variable(known[i], Type::Real);
-    if (!v.binding.input) refuse("%s: must be an input to be known in a directional derivative", v.name);
+    if (!v.is_input()) refuse("%s: must be an input to be known in a directional derivative", v.name);
     if (!std::isfinite(direction[i])) refuse("%s: direction = %g: must be a finite number", v.name, direction[i]);
-    v.binding.input(change).value = direction[i];
+    v.signal(change).value = direction[i];
   }
   for (size_t i = 0; i < n_unknown; ++i) {
     const Variable& v = variable(unknown[i], Type::Real);
-    if (v.binding.parameter || v.binding.input)
+    if (v.is_parameter() || v.is_input())
       refuse("%s: must be an output to be unknown in a directional derivative", v.name);
   }
   const Outputs y = simulation().outputs_change(change);
   for (size_t i = 0; i < n_unknown; ++i) {
-    const Binding& b = variables[unknown[i]].binding;
-    result[i] = b.output ? b.output(y) : 0;
+    const Variable& v = variables[unknown[i]];
+    result[i] = v.binding.output ? v.get(y) : 0;
   }
 }
 
@@ -187,42 +190,34 @@ fmi2Status Instance::step(double from, double length) {
   Simulation& s = *simulation_;
   if (!stepped_ && log.enabled(Category::logStatusWarning) && s.describe_imbalance(text, sizeof text))
     log.write(fmi2OK, Category::logStatusWarning, text);
-  const bool report = log.enabled(Category::logSolver);
-  const double refinements = report ? s.outputs().refinements : 0;
   AdvanceFailure failure;
-  const Held held{inputs_, parameters_.bench_frequency, parameters_.bench_acceleration, length};
   outputs_.reset();
-  if (!s.advance(held, failure)) {
+  if (!s.advance(parameters_, inputs_, length, failure)) {
     phase = StepFailed;
-    std::snprintf(
-        text, sizeof text,
-        "t = %.10g s: no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
-        "iterations: %d. The state is that of %.10g s",
-        from + failure.time, dof_name[failure.step.dof], failure.step.residual,
-        failure.step.dof == ALPHA || failure.step.dof == BETA ? "N.m" : "N", failure.step.iterations, time_);
+    std::snprintf(text, sizeof text, "t = %.10g s: %s. The state is that of %.10g s", from + failure.time, failure.text,
+                  time_);
     log.write(fmi2Discard, Category::logStatusDiscard, text);
     return fmi2Discard;
   }
   stepped_ = true;
   phase = StepComplete;
   time_ = to;
-  if (report && s.outputs().refinements > refinements) {
-    std::snprintf(text, sizeof text, "t = %.10g s: %.0f halvings of the internal step", time_,
-                  s.outputs().refinements - refinements);
-    log.write(fmi2OK, Category::logSolver, text);
+  if (log.enabled(Category::logSolver)) {
+    const int n = std::snprintf(text, sizeof text, "t = %.10g s: ", time_);
+    if (s.describe_step(text + n, static_cast<int>(sizeof text) - n)) log.write(fmi2OK, Category::logSolver, text);
   }
   return fmi2OK;
 }
 
 template <class Visitor>
-void Instance::visit(Visitor&& f) {
+void Instance::visit_values(Visitor&& f) {
   for (const Variable& v : variables) {
-    if (!v.binding.parameter) continue;
-    double x = v.binding.parameter(parameters_);
+    if (!v.is_parameter()) continue;
+    double x = v.get(parameters_);
     f(x);
-    v.binding.set_parameter(parameters_, x);
+    v.set(parameters_, x);
   }
-  zspring::visit(inputs_, f);
+  visit(inputs_, f);
   f(experiment_.start), f(experiment_.stop), f(experiment_.has_stop), f(time_), f(stepped_);
 }
 
@@ -253,7 +248,7 @@ struct Reader {
 std::vector<double> Instance::snapshot() {
   std::vector<double> numbers{static_cast<double>(phase)};
   Writer write{numbers};
-  visit(write);
+  visit_values(write);
   // A simulation that parameters or inputs have outdated is not part of the state.
   write(simulation_.has_value());
   if (simulation_) simulation_->visit_state(write);
@@ -265,11 +260,12 @@ void Instance::restore(const std::vector<double>& numbers) {
   double stored_phase;
   read(stored_phase);
   phase = static_cast<Phase>(stored_phase);
-  visit(read);
+  visit_values(read);
   bool has_simulation;
   read(has_simulation);
-  simulation_.reset();
   outputs_.reset();
+  // Hosts that iterate restore at every step: a model of the same parameters is kept, only its state is replaced.
+  if (!has_simulation || !is_model_of(parameters_)) simulation_.reset();
   if (has_simulation) simulation().visit_state(read);
 }
 

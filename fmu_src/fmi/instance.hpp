@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "core/simulation.hpp"
 #include "log.hpp"
 #include "variables.hpp"
 
@@ -71,8 +70,9 @@ class Instance {
   const Variable& variable(unsigned reference, Type type) const;
   void check_settable(const Variable& v) const;
   Simulation& simulation();  // built anew where parameters or inputs changed before the first step
+  bool is_model_of(const Parameters& p) const;
   template <class Visitor>
-  void visit(Visitor&& f);
+  void visit_values(Visitor&& f);
 
   Parameters parameters_;
   Inputs inputs_;
@@ -80,6 +80,7 @@ class Instance {
   double time_;
   bool stepped_;
   std::optional<Simulation> simulation_;
+  Parameters modelled_;  // of simulation_
   std::optional<Outputs> outputs_;  // of the present state, made when asked for
 };
 

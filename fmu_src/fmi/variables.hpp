@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <iterator>
 
 #include "bindings.hpp"
 
@@ -12,6 +13,7 @@ enum class Causality { Parameter, CalculatedParameter, Input, Output };
 
 struct Variable {
   const char* name;
+  int index;  // of an element in its array
   Type type;
   Causality causality;
   bool tunable;
@@ -20,12 +22,21 @@ struct Variable {
   double min, max;
   const char* allowed;  // "1 Force, 2 Displacement, ..." of an enumeration
   Binding binding;
+
+  bool is_parameter() const { return binding.parameter; }
+  bool is_input() const { return binding.input; }
+  double get(const Parameters& p) const { return binding.parameter(p, index); }
+  void set(Parameters& p, double x) const { binding.set_parameter(p, index, x); }
+  double get(const Calculated& c) const { return binding.calculated(c, index); }
+  Signal& signal(Inputs& u) const { return binding.input(u, index); }
+  double get(const Outputs& y) const { return binding.output(y, index); }
 };
 
-#define ZSPRING_ROW(id, name, type, causality, tunable, unit, start, min, max, allowed) \
-  {name, Type::type, Causality::causality, tunable, unit, start, min, max, allowed, bind<vr::id>()},
+#define ZSPRING_ROW(id, index, name, type, causality, tunable, unit, start, min, max, allowed) \
+  {name, index, Type::type, Causality::causality, tunable, unit, start, min, max, allowed, bind<Id::id>()},
 inline constexpr Variable variables[] = {ZSPRING_VARIABLES(ZSPRING_ROW)};
 #undef ZSPRING_ROW
+inline constexpr unsigned variable_count = std::size(variables);  // value references are 0, 1, 2, ...
 
 inline const char* type_name(Type t) {
   const char* names[] = {"Real", "Integer", "Boolean", "Enumeration"};

@@ -1,4 +1,4 @@
-"""The FMU from Python: find and unpack it once, run instances with parameters, inputs and outputs by name."""
+"""An FMU from Python: find and unpack it once, run instances with parameters, inputs and outputs by name."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import importlib.resources
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from ctypes import byref, c_void_p
 from pathlib import Path
 
 import fmpy
@@ -17,7 +18,8 @@ from fmpy.model_description import ScalarVariable
 from .errors import ZSpringError
 from .variables import Value, Variables
 
-FILE_NAME = "ZSpringPantograph.fmu"
+PANTOGRAPH = "ZSpringPantograph"
+CATENARY = "Catenary"
 
 _SET = {"Real": "setReal", "Integer": "setInteger", "Enumeration": "setInteger", "Boolean": "setBoolean"}
 _GET = {"Real": "getReal", "Integer": "getInteger", "Enumeration": "getInteger", "Boolean": "getBoolean"}
@@ -31,18 +33,18 @@ class StepDiscarded(FmuError):
     """A communication step could not be solved; the instance is as before the step."""
 
 
-def installed_fmu() -> Path:
-    """The FMU inside this package. Raises ZSpringError if there is none."""
-    path = Path(str(importlib.resources.files(__package__) / FILE_NAME))
+def installed_fmu(model: str = PANTOGRAPH) -> Path:
+    """The FMU of that model inside this package. Raises ZSpringError if there is none."""
+    path = Path(str(importlib.resources.files(__package__) / f"{model}.fmu"))
     if not path.is_file():
-        raise ZSpringError(f"no {FILE_NAME} in {path.parent}: install the package, or name an FMU with --fmu")
+        raise ZSpringError(f"no {path.name} in {path.parent}: install the package, or name an FMU with --fmu")
     return path
 
 
 class Fmu:
     """An FMU unpacked into a temporary folder, a context manager that removes the folder.
 
-    path        the .fmu file; None is the one inside this package
+    path        the .fmu file; None is the pantograph inside this package
     unpack_in   where to make the temporary folder; None is the system's place for them
     `warnings` collects, each once, the log lines of all instances that came without a refusal.
     Raises ZSpringError if the file is no FMU for co-simulation on this platform.
@@ -192,6 +194,29 @@ class Instance:
         """One communication step. Raises StepDiscarded if it could not be solved."""
         with self.refusals():
             self.slave.doStep(time, size)
+
+    def derivatives(self, outputs: Sequence[str], inputs: Mapping[str, float]) -> list[float]:
+        """Variation of Real outputs, by name, with that of the inputs held in the last communication step."""
+        with self.refusals():
+            unknowns = [self.variables[name].valueReference for name in outputs]
+            knowns = [self.variables[name].valueReference for name in inputs]
+            return list(self.slave.getDirectionalDerivative(unknowns, knowns, list(inputs.values())))
+
+    def keep(self, state: c_void_p | None = None) -> c_void_p:
+        """The complete state in the FMU's own memory, in that of `state` if given; give it back to forget()."""
+        with self.refusals():
+            state = c_void_p() if state is None else state
+            self.slave.fmi2GetFMUstate(self.slave.component, byref(state))
+            return state
+
+    def go_back(self, state: c_void_p) -> None:
+        """To a state that keep() made; it stays valid."""
+        with self.refusals():
+            self.slave.setFMUstate(state)
+
+    def forget(self, state: c_void_p) -> None:
+        """Free what keep() made."""
+        self.slave.freeFMUstate(state)
 
     def save(self) -> bytes:
         """The complete state, serialised."""

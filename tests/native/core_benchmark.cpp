@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "core/simulation.hpp"
 #include "fmi/variables.hpp"
 
 using namespace zspring;
@@ -15,17 +14,18 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   Parameters p;
   for (const fmi::Variable& v : fmi::variables)
-    if (v.binding.set_parameter) v.binding.set_parameter(p, v.start);
+    if (v.is_parameter()) v.set(p, v.start);
   p.drive = Drive::Bench;
   p.friction = static_cast<Friction>(std::atoi(argv[1]));
 
   double steps = 0, seconds = 0, frequency, acceleration;
   while (std::scanf("%lf %lf", &frequency, &acceleration) == 2) {
     const auto begin = std::chrono::steady_clock::now();
+    p.bench_frequency = frequency;
+    p.bench_acceleration = acceleration;
     Simulation simulation(p, Inputs());
     AdvanceFailure failure;
-    if (!simulation.advance({Inputs(), frequency, acceleration, std::atof(argv[2]) / frequency}, failure))
-      return 1;
+    if (!simulation.advance(p, Inputs(), std::atof(argv[2]) / frequency, failure)) return 1;
     steps += simulation.outputs().steps;
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }

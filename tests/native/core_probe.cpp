@@ -1,6 +1,6 @@
 // The core's elements as C functions, for tests that compare them with differences and closed forms (ctypes).
-#include "core/friction.hpp"
-#include "core/zspring.hpp"
+#include "pantograph/friction.hpp"
+#include "pantograph/zspring.hpp"
 
 using namespace zspring;
 

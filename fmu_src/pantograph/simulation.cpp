@@ -78,35 +78,35 @@ void Simulation::meet_variation(const Boundary& b0, MechanicalState& s) const {
 
 template <class BoundaryAt, class OnStep>
 bool Simulation::cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1,
-                       double begin, double h, int halvings, OnStep& on_step, AdvanceFailure& failure) const {
+                       double begin, double h, int halvings, OnStep& on_step, Unsolved& unsolved) const {
   MechanicalState next;
   const double h_last = s.h;
   hht_.prepare(h, h_last, s);
-  if (hht_.step(s, b0, b1, h, next, failure.step)) {
+  if (hht_.step(s, b0, b1, h, next, unsolved.step)) {
     on_step(s, next, b0, b1, h);
     s = next;
     return true;
   }
   hht_.prepare(h_last, h, s);
   s.statistics = next.statistics;
-  failure.time = begin;
+  unsolved.time = begin;
   if (halvings == most_halvings) return false;
   s.statistics.refinements += 1;
   Boundary middle;
   boundary(begin + 0.5 * h, middle);
-  return cover(s, boundary, b0, middle, begin, 0.5 * h, halvings + 1, on_step, failure) &&
-         cover(s, boundary, middle, b1, begin + 0.5 * h, 0.5 * h, halvings + 1, on_step, failure);
+  return cover(s, boundary, b0, middle, begin, 0.5 * h, halvings + 1, on_step, unsolved) &&
+         cover(s, boundary, middle, b1, begin + 0.5 * h, 0.5 * h, halvings + 1, on_step, unsolved);
 }
 
 template <class OnStep>
-bool Simulation::run(SimulationState& state, const Held& held, OnStep&& on_step, AdvanceFailure& failure) const {
-  return mechanics_.parameters.drive == Drive::Bench ? run_bench(state, held, on_step, failure)
-                                                     : run_inputs(state, held, on_step, failure);
+bool Simulation::run(SimulationState& state, const Held& held, OnStep&& on_step, Unsolved& unsolved) const {
+  return mechanics_.parameters.drive == Drive::Bench ? run_bench(state, held, on_step, unsolved)
+                                                     : run_inputs(state, held, on_step, unsolved);
 }
 
 template <class OnStep>
 bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_step,
-                           AdvanceFailure& failure) const {
+                           Unsolved& unsolved) const {
   const Parameters& p = mechanics_.parameters;
   MechanicalState& s = state.mechanical;
   Bench bench(state.bench);
@@ -132,7 +132,7 @@ bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_
     set_forces(held.inputs, done + h, b1);
     const Phasor end = bench.motion(h, b1);
     const double force = s.contact_force - p.static_force;
-    if (!cover(s, boundary, b0, b1, done, h, 0, on_step, failure)) return false;
+    if (!cover(s, boundary, b0, b1, done, h, 0, on_step, unsolved)) return false;
     bench.advance(h, reaches_node, begin, force, end, s.contact_force - p.static_force);
     b0 = b1;
     begin = end;
@@ -145,7 +145,7 @@ bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_
 
 template <class OnStep>
 bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on_step,
-                            AdvanceFailure& failure) const {
+                            Unsolved& unsolved) const {
   const Parameters& p = mechanics_.parameters;
   const double H = held.length;
   MechanicalState& s = state.mechanical;
@@ -160,19 +160,27 @@ bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on
   meet(b0, s);
   for (double i = 0; i < n; ++i) {
     boundary((i + 1) / n * H, b1);
-    if (!cover(s, boundary, b0, b1, i / n * H, H / n, 0, on_step, failure)) return false;
+    if (!cover(s, boundary, b0, b1, i / n * H, H / n, 0, on_step, unsolved)) return false;
     b0 = b1;
   }
   if (p.drive != Drive::Force) state.motion = motion.end();
   return true;
 }
 
-bool Simulation::advance(const Held& held, AdvanceFailure& failure) {
+bool Simulation::advance(const Parameters& tuned, const Inputs& inputs, double length, AdvanceFailure& failure) {
+  const Held held{inputs, tuned.bench_frequency, tuned.bench_acceleration, length};
   const SimulationState begin = state_;
   const auto nothing = [](const MechanicalState&, const MechanicalState&, const Boundary&, const Boundary&,
                           double) {};
-  if (!run(state_, held, nothing, failure)) {
+  Unsolved unsolved;
+  if (!run(state_, held, nothing, unsolved)) {
     state_ = begin;
+    const StepFailure& f = unsolved.step;
+    failure.time = unsolved.time;
+    std::snprintf(failure.text, sizeof failure.text,
+                  "no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
+                  "iterations: %d",
+                  dof_name[f.dof], f.residual, f.dof == ALPHA || f.dof == BETA ? "N.m" : "N", f.iterations);
     return false;
   }
   before_ = begin;
@@ -180,12 +188,25 @@ bool Simulation::advance(const Held& held, AdvanceFailure& failure) {
   return true;
 }
 
+void Simulation::describe_run(char* text, int size) const {
+  const Statistics& n = state_.mechanical.statistics;
+  std::snprintf(text, static_cast<size_t>(size), "%.0f steps, %.3g iterations a step, at most %.0f, %.0f refinements",
+                n.steps, n.steps > 0 ? n.iterations / n.steps : 0, n.iterations_max, n.refinements);
+}
+
+const char* Simulation::describe_step(char* text, int size) const {
+  const double halvings = state_.mechanical.statistics.refinements - before_.mechanical.statistics.refinements;
+  if (halvings == 0) return nullptr;
+  std::snprintf(text, static_cast<size_t>(size), "%.0f halvings of the internal step", halvings);
+  return text;
+}
+
 Outputs Simulation::output_rates() const {
   const MechanicalState& s = state_.mechanical;
   MechanicalState d;
   if (held_.length > 0) {
     SimulationState again = before_;
-    AdvanceFailure failure;
+    Unsolved unsolved;
     const auto quotient = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0,
                               const Boundary& b1, double h) {
       d.internal = (to.internal - from.internal) / h;
@@ -195,7 +216,7 @@ Outputs Simulation::output_rates() const {
       d.boundary.acceleration = (b1.acceleration - b0.acceleration) / h;
       d.boundary.acceleration_change = (b1.acceleration_change - b0.acceleration_change) / h;
     };
-    run(again, held_, quotient, failure);
+    run(again, held_, quotient, unsolved);
   }
   d.q = s.v;
   d.v = acceleration(hht_, s);
@@ -249,8 +270,8 @@ Outputs Simulation::outputs_change(const Inputs& direction) const {
     db0 = db1;
   };
   SimulationState again = before_;
-  AdvanceFailure failure;
-  run(again, held_, linearized, failure);
+  Unsolved unsolved;
+  run(again, held_, linearized, unsolved);
   return zspring::outputs_change(hht_, s, d);
 }
 

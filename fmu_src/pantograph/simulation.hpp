@@ -20,8 +20,8 @@ struct Held {
   double length = 0;  // s; 0 before the first step
 };
 
-struct AdvanceFailure {
-  double time;  // s since the begin of the communication step
+struct Unsolved {
+  double time = 0;  // s since the begin of the communication step
   StepFailure step;
 };
 
@@ -32,8 +32,9 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  // Over held.length > 0. False, with the state as before, where a step could not be solved even after halving.
-  bool advance(const Held& held, AdvanceFailure& failure);
+  // Over `length` > 0 s; of the parameters, those that are tunable may have changed. False, with the state as
+  // before, where a step could not be solved even after halving.
+  bool advance(const Parameters& tuned, const Inputs& inputs, double length, AdvanceFailure& failure);
 
   Outputs outputs() const { return zspring::outputs(hht_, state_.mechanical, state_.bench); }
   // d outputs / d time at the end of the last communication step; difference quotients over the last internal
@@ -46,7 +47,11 @@ class Simulation {
   // The first input that the static state does not balance, or null: "uplift.head = 3 N: ...".
   const char* describe_imbalance(char* text, int size) const;
 
-  const StaticStiffness& stiffness() const { return mechanics_.stiffness; }
+  // What the solver did: in the whole simulation; in the last communication step, or null where that is usual.
+  void describe_run(char* text, int size) const;
+  const char* describe_step(char* text, int size) const;
+
+  const StaticStiffness& calculated() const { return mechanics_.stiffness; }
 
   // Numbers in fixed order, each given to f as a double or a fixed-size vector of them.
   template <class Visitor>
@@ -57,15 +62,15 @@ class Simulation {
   Boundary initial_boundary(const Inputs& inputs) const;
   // Drives `state` through a communication step; on_step(from, to, b0, b1, h) sees each accepted internal step.
   template <class OnStep>
-  bool run(SimulationState& state, const Held& held, OnStep&& on_step, AdvanceFailure& failure) const;
+  bool run(SimulationState& state, const Held& held, OnStep&& on_step, Unsolved& unsolved) const;
   template <class OnStep>
-  bool run_bench(SimulationState& state, const Held& held, OnStep& on_step, AdvanceFailure& failure) const;
+  bool run_bench(SimulationState& state, const Held& held, OnStep& on_step, Unsolved& unsolved) const;
   template <class OnStep>
-  bool run_inputs(SimulationState& state, const Held& held, OnStep& on_step, AdvanceFailure& failure) const;
+  bool run_inputs(SimulationState& state, const Held& held, OnStep& on_step, Unsolved& unsolved) const;
   // One internal step, halved as often as it takes.
   template <class BoundaryAt, class OnStep>
   bool cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin,
-             double h, int halvings, OnStep& on_step, AdvanceFailure& failure) const;
+             double h, int halvings, OnStep& on_step, Unsolved& unsolved) const;
   void meet(const Boundary& b0, MechanicalState& s) const;
   void meet_variation(const Boundary& db0, MechanicalState& d) const;
 
@@ -80,11 +85,6 @@ void visit(SimulationState& s, Visitor&& f) {
   visit(s.mechanical, f);
   visit(s.motion, f);
   visit(s.bench, f);
-}
-
-template <class Visitor>
-void visit(Signal& s, Visitor&& f) {
-  f(s.value), f(s.rate), f(s.curvature), f(s.has_derivatives), f(s.has_curvature);
 }
 
 template <class Visitor>

@@ -4,7 +4,7 @@
 // `static_force`; angles in rad. There are no default values here: modelDescription.xml holds them.
 #pragma once
 
-#include <stdexcept>
+#include "common/signal.hpp"
 
 namespace zspring {
 
@@ -49,17 +49,6 @@ struct Parameters {
   SolverParameters solver;
 };
 
-// An input between communication points: value + rate tau + 1/2 curvature tau^2, tau since the last one.
-struct Signal {
-  double value = 0;
-  double rate = 0;
-  double curvature = 0;
-  bool has_derivatives = false;  // rate or curvature were given: `value` belongs to the begin of the step
-  bool has_curvature = false;
-
-  double at(double tau) const { return value + tau * (rate + 0.5 * curvature * tau); }
-};
-
 struct Inputs {
   Signal contact_force;      // N, Drive::Force
   Signal head_displacement;  // m, Drive::Displacement
@@ -86,11 +75,6 @@ struct StaticStiffness {
   double theta = 0;     // rad
   double k_locked = 0;  // N/m
   double k_free = 0;    // N/m
-};
-
-// Parameters that make no model: the message names the variable, its value and what is allowed.
-class ParameterError : public std::invalid_argument {
-  using std::invalid_argument::invalid_argument;
 };
 
 }  // namespace zspring

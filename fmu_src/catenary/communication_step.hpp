@@ -1,0 +1,77 @@
+// What the inputs do over one communication step: where the pantographs are, and how hard they press.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "line.hpp"
+#include "path.hpp"
+
+namespace zspring::catenary {
+
+inline constexpr double rounding_of_time = 1e-6;  // of an internal step: hosts add up their communication points
+
+inline Loads loads_at(const Mesh& mesh, const Passage passage[pantographs]) {
+  Loads l;
+  for (int i = 0; i < pantographs; ++i) {
+    l.on[i].place = mesh.at(passage[i].position);
+    l.on[i].value = passage[i].force * l.on[i].place.value;
+  }
+  return l;
+}
+
+inline Passage initial_passage(const Parameters& p, int i, const PantographInputs& u) {
+  if (p.travel == Travel::Speed) return {p.start[i], u.speed.value, u.force.value};
+  return {u.position.value, 0, u.force.value};
+}
+
+class CommunicationStep {
+ public:
+  CommunicationStep(const Line& line, const Passage begin[pantographs], const Inputs& inputs, double length)
+      : line_(line), begin_(begin), inputs_(inputs), length_(length) {}
+
+  // Linear in begin and inputs: of variations it returns the variation.
+  Passage at(int i, double tau) const {
+    const PantographInputs& u = inputs_.pantograph[i];
+    const Passage& from = begin_[i];
+    const double force = Path(from.force, u.force, length_).at(tau);
+    if (line_.p.travel == Travel::Position) {
+      const Path x(from.position, u.position, length_);
+      return {x.at(tau), x.rate(tau), force};
+    }
+    const Path speed(from.speed, u.speed, length_);
+    return {from.position + speed.integral(tau), speed.at(tau), force};
+  }
+
+  Loads loads(double tau) const {
+    const Passage here[pantographs] = {at(0, tau), at(1, tau)};
+    return loads_at(line_.mesh, here);
+  }
+  // Their variation when `change` is that of this step.
+  Loads loads_change(const CommunicationStep& change, double tau) const {
+    Loads l = loads(tau);
+    for (int i = 0; i < pantographs; ++i) {
+      const Passage d = change.at(i, tau);
+      const Place& place = l.on[i].place;
+      l.on[i].value = d.force * place.value + at(i, tau).force * d.position * place.slope;
+    }
+    return l;
+  }
+
+  // m/s2, at the end.
+  double speed_rate(int i) const {
+    if (line_.p.travel == Travel::Position) return 0;
+    return Path(begin_[i].speed, inputs_.pantograph[i].speed, length_).rate(length_);
+  }
+
+  double internal_steps() const { return std::max(1.0, std::ceil(length_ / line_.p.step - rounding_of_time)); }
+  double length() const { return length_; }
+
+ private:
+  const Line& line_;
+  const Passage* begin_;
+  const Inputs& inputs_;
+  double length_;
+};
+
+}  // namespace zspring::catenary

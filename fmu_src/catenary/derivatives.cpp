@@ -1,0 +1,133 @@
+// Derivatives of the outputs, with respect to time and to the inputs.
+#include "simulation.hpp"
+
+namespace zspring::catenary {
+
+// With the variation `d` of the state and of where the pantographs are; counters do not vary.
+Outputs Simulation::change(const LineState& d) const {
+  Outputs y{};
+  const LineState& s = state_;
+  const auto at = [&](const Passage& now, const Passage& change) {
+    const Place place = line_.mesh.at(now.position);
+    const Eigen::Vector4d u = place.of(s.u), height = u + place.of(line_.shape.height), v = place.of(s.v);
+    const Eigen::Vector4d du = place.of(d.u), dv = place.of(d.v);
+    WireOutputs w;
+    w.uplift = place.value.dot(du) + change.position * place.slope.dot(u);
+    w.height = place.value.dot(du) + change.position * place.slope.dot(height);
+    w.velocity = place.value.dot(dv) + change.position * place.slope.dot(v) + now.speed * place.slope.dot(du) +
+                 change.speed * place.slope.dot(height) +
+                 now.speed * change.position * place.curvature.dot(height);
+    return w;
+  };
+  for (int i = 0; i < pantographs; ++i) {
+    y.position[i] = d.passage[i].position;
+    y.contact[i] = at(s.passage[i], d.passage[i]);
+  }
+  for (size_t i = 0; i < line_.mesh.supports.size(); ++i)
+    y.support_uplift[i] = d.u[deflection(line_.mesh.supports[i], Contact)];
+  for (int i = 0; i < most_points; ++i) y.point[i] = at({line_.p.point_position[i], 0, 0}, {});
+  int weakest = 0, strongest = 0;
+  const int n = static_cast<int>(line_.mesh.droppers.size());
+  for (int j = 1; j < n; ++j) {
+    if (dropper_force(j) < dropper_force(weakest)) weakest = j;
+    if (dropper_force(j) > dropper_force(strongest)) strongest = j;
+  }
+  const auto force_change = [&](int j) {
+    return j < n && !(s.slack[j] > 0) ? line_.shape.stiffness[j] * stretch(line_.mesh, d.u, j) : 0;
+  };
+  y.dropper_force_min = force_change(weakest);
+  y.dropper_force_max = force_change(strongest);
+  y.kinetic = d.kinetic, y.elastic = d.elastic, y.dissipated = d.dissipated, y.work = d.work;
+  return y;
+}
+
+Outputs Simulation::output_rates() const {
+  const LineState& s = state_;
+  LineState d;
+  d.u = s.v;
+  d.v = s.a;
+  const Loads loads = loads_at(line_.mesh, s.passage);
+  d.kinetic = s.v.dot(line_.matrices.mass * s.a);
+  d.dissipated = s.loss_power;
+  d.work = loads.dot(s.v);
+  d.elastic = s.v.dot(s.internal) - s.loss_power + d.work;
+  const CommunicationStep step(line_, before_.passage, held_, length_);
+  for (int i = 0; i < pantographs; ++i) {
+    d.passage[i].position = s.passage[i].speed;
+    if (length_ > 0) d.passage[i].speed = step.speed_rate(i);
+  }
+  return change(d);
+}
+
+void Simulation::vary_energies(const CommunicationStep& step, const CommunicationStep& change, double tau0,
+                               double tau1, const LineState& from, const LineState& to, const LineState& dfrom,
+                               LineState& dto) const {
+  const Loads l0 = step.loads(tau0), l1 = step.loads(tau1);
+  const Loads dl0 = step.loads_change(change, tau0), dl1 = step.loads_change(change, tau1);
+  const VectorXd damping = hht_.damping_force(to.v);
+  dto.kinetic = to.v.dot(line_.matrices.mass * dto.v);
+  dto.elastic = dto.u.dot(to.internal - damping) + l1.dot(dto.u);
+  dto.loss_power = 2 * dto.v.dot(damping);
+  dto.dissipated = dfrom.dissipated + 0.5 * (tau1 - tau0) * (dfrom.loss_power + dto.loss_power);
+  dto.work = dfrom.work + 0.5 * (l0.dot(dto.u) + l1.dot(dto.u) - l0.dot(dfrom.u) - l1.dot(dfrom.u)) +
+             0.5 * (dl0.dot(to.u) + dl1.dot(to.u) - dl0.dot(from.u) - dl1.dot(from.u));
+}
+
+Outputs Simulation::outputs_change(const Inputs& direction) {
+  if (length_ == 0) {
+    LineState placed;
+    Loads dloads = loads_at(line_.mesh, state_.passage);
+    for (int i = 0; i < pantographs; ++i) {
+      placed.passage[i] = initial_passage(line_.p, i, direction.pantograph[i]);
+      if (line_.p.travel == Travel::Speed) placed.passage[i].position = 0;  // a parameter
+      const Place& place = dloads.on[i].place;
+      dloads.on[i].value = placed.passage[i].force * place.value +
+                           state_.passage[i].force * placed.passage[i].position * place.slope;
+    }
+    LineState d = hht_.at_rest_variation(dloads, state_.slack);
+    std::copy_n(placed.passage, pantographs, d.passage);
+    d.elastic = loads_at(line_.mesh, state_.passage).dot(d.u);
+    return change(d);
+  }
+  // Only values vary; whether they are targets does not.
+  Inputs changed = direction;
+  for (int i = 0; i < pantographs; ++i) {
+    const PantographInputs& u = held_.pantograph[i];
+    PantographInputs& du = changed.pantograph[i];
+    du.force.has_derivatives = u.force.has_derivatives;
+    du.speed.has_derivatives = u.speed.has_derivatives;
+    du.position.has_derivatives = u.position.has_derivatives;
+  }
+  const Passage nothing[pantographs] = {};
+  const CommunicationStep step(line_, before_.passage, held_, length_), change_of(line_, nothing, changed, length_);
+  const double n = step.internal_steps();
+  const StepFactors& factors = hht_.factors(length_ / n);
+
+  LineState from = before_, d;
+  d.u = d.v = d.a = d.internal = VectorXd::Zero(line_.mesh.dofs());
+  d.slack = VectorXd::Zero(state_.slack.size());
+  Loads l0 = step.loads(0);
+  hht_.jump(loads_at(line_.mesh, before_.passage), l0, from);
+  const Loads begin_change = step.loads_change(change_of, 0);
+  Loads no_change = begin_change;
+  for (PointLoad& l : no_change.on) l.value.setZero();
+  hht_.jump(no_change, begin_change, d);
+  for (double k = 1; k <= n; ++k) {
+    const double tau0 = (k - 1) / n * length_, tau1 = k / n * length_;
+    const Loads l1 = step.loads(tau1);
+    LineState to = from;
+    if (k < n)
+      hht_.step(factors, l0, l1, to);  // as it was done before
+    else
+      to = state_;
+    const LineState dfrom = d;
+    hht_.step_variation(factors, step.loads_change(change_of, tau1), to, d);
+    vary_energies(step, change_of, tau0, tau1, from, to, dfrom, d);
+    from = to;
+    l0 = l1;
+  }
+  for (int i = 0; i < pantographs; ++i) d.passage[i] = change_of.at(i, length_);
+  return change(d);
+}
+
+}  // namespace zspring::catenary

@@ -1,0 +1,189 @@
+#include "hht.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace zspring::catenary {
+namespace {
+
+double rounded(double h) {
+  int exponent;
+  const double mantissa = std::frexp(h, &exponent);
+  return std::ldexp(std::round(std::ldexp(mantissa, 36)), exponent - 36);
+}
+
+double weight(const Line& line) { return 1 + line.p.hht_alpha; }
+
+// M + (1 + hht_alpha) (gamma h C + beta h^2 K)
+SparseMatrix iteration_matrix(const Line& line, double gamma_h, double beta_h2) {
+  const Parameters& p = line.p;
+  const double w = weight(line);
+  return (1 + w * gamma_h * p.damping_mass) * line.matrices.mass +
+         w * gamma_h * p.damping_stiffness * line.matrices.wires + w * beta_h2 * line.stiffness();
+}
+
+}  // namespace
+
+StepFactors::StepFactors(const Line& line, double step)
+    : h(step),
+      beta_h2(0.25 * (1 - line.p.hht_alpha) * (1 - line.p.hht_alpha) * h * h),
+      gamma_h((0.5 - line.p.hht_alpha) * h),
+      old_position(0.5 * h * h - beta_h2),
+      old_velocity(h - gamma_h),
+      factor(iteration_matrix(line, gamma_h, beta_h2)),
+      droppers(line.mesh, factor, weight(line) * beta_h2) {}
+
+Hht::Hht(const Line& line)
+    : line_(line),
+      mass_factor_(line.matrices.mass),
+      slackening_(line.shape.stiffness),
+      x_(line.mesh.dofs()),
+      y_(line.mesh.dofs()),
+      mv_(line.mesh.dofs()),
+      ma_(line.mesh.dofs()),
+      trial_(line.shape.stiffness.size()) {
+  factors(line.p.step);
+}
+
+const StepFactors& Hht::factors(double h) {
+  const double wanted = rounded(h);
+  auto* const end = std::end(factors_);
+  auto* found = std::find_if(factors_, end, [&](const auto& f) { return !f || f->h == wanted; });
+  if (found == end) --found;
+  if (!*found || (*found)->h != wanted) *found = std::make_unique<StepFactors>(line_, wanted);
+  std::rotate(factors_, found, found + 1);
+  return *factors_[0];
+}
+
+// In trial_: the droppers' forces, N, at u + beta_h2 a if none were slack.
+void Hht::trial_forces(const VectorXd& u, const VectorXd& a, double beta_h2) {
+  const StaticShape& shape = line_.shape;
+  for (int j = 0; j < static_cast<int>(trial_.size()); ++j)
+    trial_[j] = shape.stiffness[j] * (stretch(line_.mesh, u, j) + beta_h2 * stretch(line_.mesh, a, j));
+}
+
+// What the slack droppers do to x, in units of `factor` over the response's.
+void Hht::add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const {
+  for (int j = 0; j < static_cast<int>(slack.size()); ++j)
+    if (slack[j] != 0) response.add(j, -factor * line_.shape.stiffness[j] * slack[j], x);
+}
+
+Cholesky Hht::static_factor() const {
+  SparseMatrix stiffness = line_.stiffness();
+  for (int dof = 0; dof < line_.mesh.dofs(); ++dof)
+    if (is_anchor(line_.mesh, dof)) stiffness.coeffRef(dof, dof) = 1;
+  return Cholesky(stiffness);
+}
+
+LineState Hht::at_rest(const Loads& loads) {
+  LineState s = at_rest_variation(loads, {});
+  trial_forces(s.u, s.a, 0);
+  trial_ += line_.shape.tension;
+  if (trial_.size() > 0 && trial_.minCoeff() < 0) {
+    const DropperResponse response(line_.mesh, static_factor(), 1);
+    if (slackening_.solve(trial_, response.compliance(), s.slack) < 0)
+      throw std::runtime_error("no equilibrium of the line under the initial contact forces was found");
+    add_slack(response, 1, s.slack, s.u);
+  }
+  x_.noalias() = line_.matrices.wires * s.u;
+  line_.add_springs(s.u, x_);
+  s.elastic = 0.5 * (s.u.dot(x_) - s.slack.cwiseAbs2().dot(line_.shape.stiffness));
+  return s;
+}
+
+LineState Hht::at_rest_variation(const Loads& dloads, const VectorXd& slack) {
+  LineState d;
+  d.u = d.v = d.a = d.internal = VectorXd::Zero(line_.mesh.dofs());
+  d.slack = VectorXd::Zero(trial_.size());
+  const Cholesky factor = static_factor();
+  dloads.add_to(d.u, 1);
+  solve(factor, d.u);
+  if (slack.size() > 0 && slack.maxCoeff() > 0) {
+    const DropperResponse response(line_.mesh, factor, 1);
+    trial_forces(d.u, d.a, 0);
+    slackening_.solve_variation(trial_, response.compliance(), slack, d.slack);
+    add_slack(response, 1, d.slack, d.u);
+  }
+  return d;
+}
+
+void Hht::jump(const Loads& l0, const Loads& l1, LineState& s) {
+  if (l0 == l1) return;
+  x_.setZero();
+  l1.add_to(x_, 1);
+  l0.add_to(x_, -1);
+  s.internal -= x_;
+  solve(mass_factor_, x_);
+  s.a += x_;
+}
+
+// Leaves in s.u, s.v the predictors, in s.a the acceleration if no dropper were slack, in mv_ M times the predictor
+// of v.
+void Hht::predict(const StepFactors& f, const Loads& l1, LineState& s) {
+  const Parameters& p = line_.p;
+  s.u += f.h * s.v + f.old_position * s.a;
+  s.v += f.old_velocity * s.a;
+  y_ = s.u + p.damping_stiffness * s.v;
+  x_.noalias() = line_.matrices.wires * y_;
+  line_.add_springs(s.u, x_);
+  mv_.noalias() = line_.matrices.mass * s.v;
+  x_ += p.damping_mass * mv_;
+  s.a = p.hht_alpha * s.internal - weight(line_) * x_;
+  l1.add_to(s.a, weight(line_));
+  solve(f.factor, s.a);
+}
+
+// With what the slack droppers do: the state at the end of the step.
+void Hht::correct(const StepFactors& f, LineState& s) {
+  const double w = weight(line_);
+  add_slack(f.droppers, w, s.slack, s.a);
+  s.u += f.beta_h2 * s.a;
+  s.v += f.gamma_h * s.a;
+  ma_.noalias() = line_.matrices.mass * s.a;
+  s.internal = (line_.p.hht_alpha / w) * s.internal - (1 / w) * ma_;
+}
+
+bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s) {
+  const Parameters& p = line_.p;
+  const double work_before = l0.dot(s.u) + l1.dot(s.u);
+  predict(f, l1, s);
+  trial_forces(s.u, s.a, f.beta_h2);
+  trial_ += line_.shape.tension;
+  const int solved = slackening_.solve(trial_, f.droppers.compliance(), s.slack);
+  if (solved < 0 || !s.a.allFinite()) return false;
+  correct(f, s);
+
+  // Energies; mv_ becomes M v, x_ the damping force.
+  mv_ += f.gamma_h * ma_;
+  s.kinetic = 0.5 * s.v.dot(mv_);
+  x_.noalias() = line_.matrices.wires * s.v;
+  x_ = p.damping_stiffness * x_ + p.damping_mass * mv_;
+  const double power = s.v.dot(x_);
+  s.dissipated += 0.5 * f.h * (s.loss_power + power);
+  s.loss_power = power;
+  s.work += 0.5 * (l0.dot(s.u) + l1.dot(s.u) - work_before);
+  // u' K u from the internal forces, which hold K u, the slack droppers and less the contact forces.
+  double strain = s.u.dot(s.internal) - s.u.dot(x_) + l1.dot(s.u);
+  for (int j = 0; j < static_cast<int>(s.slack.size()); ++j)
+    if (s.slack[j] != 0) strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
+  s.elastic = 0.5 * strain;
+
+  s.statistics.steps += 1;
+  s.statistics.iterations += solved;
+  s.statistics.iterations_max = std::max<double>(s.statistics.iterations_max, solved);
+  return true;
+}
+
+void Hht::step_variation(const StepFactors& f, const Loads& dl1, const LineState& to, LineState& d) {
+  predict(f, dl1, d);
+  trial_forces(d.u, d.a, f.beta_h2);
+  slackening_.solve_variation(trial_, f.droppers.compliance(), to.slack, d.slack);
+  correct(f, d);
+}
+
+VectorXd Hht::damping_force(const VectorXd& v) const {
+  return line_.p.damping_mass * (line_.matrices.mass * v) + line_.p.damping_stiffness * (line_.matrices.wires * v);
+}
+
+}  // namespace zspring::catenary

@@ -1,0 +1,45 @@
+#include "line.hpp"
+
+#include "droppers.hpp"
+
+namespace zspring::catenary {
+namespace {
+
+Matrices with_droppers(Matrices m, const Parameters& p, const Mesh& mesh, const StaticShape& shape) {
+  for (size_t j = 0; j < mesh.droppers.size(); ++j) {
+    const double half = 0.5 * p.dropper.mass * shape.length[static_cast<Eigen::Index>(j)];
+    for (Wire wire : {Contact, Messenger}) {
+      const int dof = deflection(mesh.droppers[j], wire);
+      m.mass.coeffRef(dof, dof) += half;
+    };
+  }
+  return m;
+}
+
+}  // namespace
+
+Line::Line(const Parameters& parameters)
+    : p(parameters), mesh(p), matrices(p, mesh), shape(static_shape(p, mesh, matrices)) {
+  matrices = with_droppers(std::move(matrices), p, mesh, shape);
+}
+
+void Line::add_springs(const VectorXd& u, VectorXd& internal) const {
+  for (const Spring& s : matrices.supports) internal[s.dof] += s.stiffness * u[s.dof];
+  for (int j = 0; j < static_cast<int>(mesh.droppers.size()); ++j)
+    add_tension(mesh, j, shape.stiffness[j] * stretch(mesh, u, j), internal);
+}
+
+SparseMatrix Line::stiffness() const {
+  SparseMatrix k = matrices.wires;
+  for (const Spring& s : matrices.supports) k.coeffRef(s.dof, s.dof) += s.stiffness;
+  for (size_t j = 0; j < mesh.droppers.size(); ++j) {
+    const int contact = deflection(mesh.droppers[j], Contact), messenger = deflection(mesh.droppers[j], Messenger);
+    const double stiffness = shape.stiffness[static_cast<Eigen::Index>(j)];
+    k.coeffRef(contact, contact) += stiffness, k.coeffRef(messenger, messenger) += stiffness;
+    k.coeffRef(contact, messenger) -= stiffness, k.coeffRef(messenger, contact) -= stiffness;
+  }
+  k.makeCompressed();
+  return k;
+}
+
+}  // namespace zspring::catenary

@@ -1,0 +1,79 @@
+// The overhead line, linearised about its unloaded static shape, and all that changes in a simulation step.
+#pragma once
+
+#include "static_shape.hpp"
+
+namespace zspring::catenary {
+
+// Displacements u are measured from the unloaded static shape. With all droppers pulling,
+//
+//   M u'' + C u' + K u = forces,   C = damping_mass M + damping_stiffness K_wires
+struct Line {
+  explicit Line(const Parameters& parameters);
+
+  void add_springs(const VectorXd& u, VectorXd& internal) const;  // supports, steady arms, pulling droppers
+  SparseMatrix stiffness() const;                                 // K
+
+  Parameters p;
+  Mesh mesh;
+  Matrices matrices;
+  StaticShape shape;
+};
+
+// A contact force on the contact wire, at one place.
+struct PointLoad {
+  Place place;
+  Eigen::Vector4d value = Eigen::Vector4d::Zero();  // N, N m: force times place.value
+};
+
+struct Loads {
+  PointLoad on[pantographs];
+
+  void add_to(VectorXd& x, double factor) const {
+    for (const PointLoad& l : on) l.place.add(factor * l.value, x);
+  }
+  bool operator==(const Loads& other) const {
+    for (int i = 0; i < pantographs; ++i)
+      if (on[i].place.station != other.on[i].place.station || on[i].value != other.on[i].value) return false;
+    return true;
+  }
+  double dot(const VectorXd& x) const {
+    double sum = 0;
+    for (const PointLoad& l : on) sum += l.value.dot(l.place.of(x));
+    return sum;
+  }
+};
+
+struct Statistics {
+  double steps = 0;           // internal steps
+  double iterations = 0;      // linear systems solved for the slack droppers
+  double iterations_max = 0;  // of the worst step
+};
+
+// Position, speed and force of a pantograph at a communication point.
+struct Passage {
+  double position = 0;  // m
+  double speed = 0;     // m/s
+  double force = 0;     // N
+};
+
+struct LineState {
+  VectorXd u, v;      // m and 1, m/s and 1/s
+  VectorXd a;         // HHT's acceleration, which belongs to t + hht_alpha h
+  VectorXd internal;  // N and N m: C v + K u + slack droppers - contact forces
+  VectorXd slack;     // m, of the droppers
+  double kinetic = 0, elastic = 0, dissipated = 0, work = 0;  // J; elastic from the unloaded static state
+  double loss_power = 0;                                      // W
+  Passage passage[pantographs];
+  Statistics statistics;
+};
+
+template <class Visitor>
+void visit(LineState& s, Visitor&& f) {
+  f(s.u), f(s.v), f(s.a), f(s.internal), f(s.slack);
+  f(s.kinetic), f(s.elastic), f(s.dissipated), f(s.work), f(s.loss_power);
+  for (Passage& p : s.passage) f(p.position), f(p.speed), f(p.force);
+  f(s.statistics.steps), f(s.statistics.iterations), f(s.statistics.iterations_max);
+}
+
+}  // namespace zspring::catenary

@@ -1,0 +1,39 @@
+// Finite-element matrices of the two wires: tensioned Euler-Bernoulli beams with consistent mass.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include "mesh.hpp"
+
+namespace zspring::catenary {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+// Stations are numbered along the line: the natural order has the least fill, and needs no permutation.
+using Cholesky = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
+
+struct Spring {
+  int dof;
+  double stiffness;  // N/m
+};
+
+// The anchors hold the deflection of both wires at both ends: their rows are those of a free unit mass that
+// nothing loads.
+struct Matrices {
+  explicit Matrices(const Parameters& p, const Mesh& mesh);
+
+  SparseMatrix wires;            // stiffness of the wires alone
+  SparseMatrix mass;             // with clamps and steady arms; droppers are added with their lengths
+  std::vector<Spring> supports;  // messenger supports and steady arms
+  VectorXd weight;               // N and N m, of the wires alone, downward positive
+};
+
+bool is_anchor(const Mesh& mesh, int dof);
+// The matrix with rows and columns of `held` degrees of freedom replaced by unity.
+SparseMatrix hold(const SparseMatrix& matrix, const std::vector<int>& held);
+// In place, without allocation.
+void solve(const Cholesky& factor, VectorXd& x);
+
+}  // namespace zspring::catenary

@@ -1,0 +1,56 @@
+// Stations along the line: places where both wires have a node, at supports, droppers and between.
+//
+// Each station has four degrees of freedom: deflection and slope of contact wire and messenger. Numbered along the
+// line, so every matrix has a narrow band and its Cholesky factor no fill outside of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "parameters.hpp"
+
+namespace zspring::catenary {
+
+enum Wire { Contact, Messenger };
+
+inline int deflection(int station, Wire wire) { return 4 * station + 2 * wire; }
+inline int slope(int station, Wire wire) { return deflection(station, wire) + 1; }
+
+// Cubic Hermite functions of a beam element at a place: deflection there is value . (w, w' at both its ends).
+struct Place {
+  int station = 0;  // at the element's begin
+  Eigen::Vector4d value = Eigen::Vector4d::Zero();
+  Eigen::Vector4d slope = Eigen::Vector4d::Zero();      // 1/m, d value / dx
+  Eigen::Vector4d curvature = Eigen::Vector4d::Zero();  // 1/m2
+
+  // The deflections and slopes of the contact wire at the element's ends, out of a vector of all.
+  template <class Vector>
+  Eigen::Vector4d of(const Vector& all) const {
+    const int i = deflection(station, Contact);
+    return {all[i], all[i + 1], all[i + 4], all[i + 5]};
+  }
+  template <class Vector>
+  void add(const Eigen::Vector4d& load, Vector& all) const {
+    const int i = deflection(station, Contact);
+    all[i] += load[0], all[i + 1] += load[1], all[i + 4] += load[2], all[i + 5] += load[3];
+  }
+};
+
+class Mesh {
+ public:
+  // Throws ParameterError where droppers are not in order within the span.
+  explicit Mesh(const Parameters& p);
+
+  int stations() const { return static_cast<int>(x.size()); }
+  int dofs() const { return 4 * stations(); }
+  double length() const { return x.back(); }
+  bool contains(double position) const { return position >= x.front() && position <= x.back(); }
+  // All zero outside the line.
+  Place at(double position) const;
+
+  std::vector<double> x;       // m, of the stations
+  std::vector<int> droppers;   // their stations, along the line
+  std::vector<int> supports;   // the stations at span boundaries, the anchors at both ends included
+};
+
+}  // namespace zspring::catenary
