@@ -59,18 +59,13 @@ Outputs Simulation::output_rates() const {
   return change(d);
 }
 
-void Simulation::vary_energies(const CommunicationStep& step, const CommunicationStep& change, double tau0,
-                               double tau1, const LineState& from, const LineState& to, const LineState& dfrom,
-                               LineState& dto) const {
-  const Loads l0 = step.loads(tau0), l1 = step.loads(tau1);
-  const Loads dl0 = step.loads_change(change, tau0), dl1 = step.loads_change(change, tau1);
+// Of the variation `d` of `to`, the state that an internal step of h s led to, what it needs no step for.
+void Simulation::vary_energies(const Loads& l1, double h, const LineState& to, LineState& d) const {
   const VectorXd damping = hht_.damping_force(to.v);
-  dto.kinetic = to.v.dot(line_.matrices.mass * dto.v);
-  dto.elastic = dto.u.dot(to.internal - damping) + l1.dot(dto.u);
-  dto.loss_power = 2 * dto.v.dot(damping);
-  dto.dissipated = dfrom.dissipated + 0.5 * (tau1 - tau0) * (dfrom.loss_power + dto.loss_power);
-  dto.work = dfrom.work + 0.5 * (l0.dot(dto.u) + l1.dot(dto.u) - l0.dot(dfrom.u) - l1.dot(dfrom.u)) +
-             0.5 * (dl0.dot(to.u) + dl1.dot(to.u) - dl0.dot(from.u) - dl1.dot(from.u));
+  d.elastic = d.u.dot(to.internal) - d.u.dot(damping) + l1.dot(d.u);
+  const double power = 2 * d.v.dot(damping);
+  d.dissipated += 0.5 * h * (d.loss_power + power);
+  d.loss_power = power;
 }
 
 Outputs Simulation::outputs_change(const Inputs& direction) {
@@ -99,32 +94,34 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     du.position.has_derivatives = u.position.has_derivatives;
   }
   const Passage nothing[pantographs] = {};
-  const CommunicationStep step(line_, before_.passage, held_, length_), change_of(line_, nothing, changed, length_);
+  const CommunicationStep step(line_, before_.passage, held_, length_),
+      change_of(line_, nothing, changed, length_);
   const double n = step.internal_steps();
   const StepFactors& factors = hht_.factors(length_ / n);
 
-  LineState from = before_, d;
+  LineState d;
   d.u = d.v = d.a = d.internal = VectorXd::Zero(line_.mesh.dofs());
   d.slack = VectorXd::Zero(state_.slack.size());
-  Loads l0 = step.loads(0);
-  hht_.jump(loads_at(line_.mesh, before_.passage), l0, from);
-  const Loads begin_change = step.loads_change(change_of, 0);
-  Loads no_change = begin_change;
-  for (PointLoad& l : no_change.on) l.value.setZero();
-  hht_.jump(no_change, begin_change, d);
+  Loads l0 = step.loads(0), dl0 = step.loads_change(change_of, 0);
+  Loads none = dl0;
+  for (PointLoad& l : none.on) l.value.setZero();
+  hht_.jump(none, dl0, d);
+  LineState again;  // the steps before the last are done again
+  if (n > 1) {
+    again = before_;
+    hht_.jump(loads_at(line_.mesh, before_.passage), l0, again);
+  }
   for (double k = 1; k <= n; ++k) {
-    const double tau0 = (k - 1) / n * length_, tau1 = k / n * length_;
-    const Loads l1 = step.loads(tau1);
-    LineState to = from;
-    if (k < n)
-      hht_.step(factors, l0, l1, to);  // as it was done before
-    else
-      to = state_;
-    const LineState dfrom = d;
-    hht_.step_variation(factors, step.loads_change(change_of, tau1), to, d);
-    vary_energies(step, change_of, tau0, tau1, from, to, dfrom, d);
-    from = to;
+    const Loads l1 = step.loads(k / n * length_), dl1 = step.loads_change(change_of, k / n * length_);
+    const double lifted = dl0.dot(k > 1 ? again.u : before_.u) + dl1.dot(k > 1 ? again.u : before_.u);
+    const double lifted_change = l0.dot(d.u) + l1.dot(d.u);
+    if (k < n) hht_.step(factors, l0, l1, again);
+    const LineState& to = k < n ? again : state_;
+    hht_.step_variation(factors, dl1, to, d);
+    vary_energies(l1, factors.h, to, d);
+    d.work += 0.5 * (dl0.dot(to.u) + dl1.dot(to.u) - lifted + l0.dot(d.u) + l1.dot(d.u) - lifted_change);
     l0 = l1;
+    dl0 = dl1;
   }
   for (int i = 0; i < pantographs; ++i) d.passage[i] = change_of.at(i, length_);
   return change(d);

@@ -4,14 +4,14 @@
 
 namespace zspring::catenary {
 
-DropperResponse::DropperResponse(const Mesh& mesh, const Cholesky& factor, double scale) {
+DropperResponse::DropperResponse(const Mesh& mesh, const BlockCholesky& factor, double scale) {
   const int n = static_cast<int>(mesh.droppers.size());
   compliance_.resize(n, n);
   VectorXd x(mesh.dofs());
   for (int j = 0; j < n; ++j) {
     x.setZero();
     add_tension(mesh, j, 1, x);
-    catenary::solve(factor, x);
+    factor.solve(x);
     for (int i = 0; i < n; ++i) compliance_(i, j) = scale * stretch(mesh, x, i);
     const double negligible = 1e-2 * std::numeric_limits<double>::epsilon() * x.cwiseAbs().maxCoeff();
     Eigen::Index begin = 0, end = x.size();
@@ -96,7 +96,8 @@ int Slackening::solve(const VectorXd& trial, const MatrixXd& compliance, VectorX
   return -1;
 }
 
-void Slackening::solve_variation(const VectorXd& trial, const MatrixXd& compliance, const VectorXd& s, VectorXd& ds) {
+void Slackening::solve_variation(const VectorXd& trial, const MatrixXd& compliance, const VectorXd& s,
+                                 VectorXd& ds) {
   count_ = 0;
   for (Eigen::Index i = 0; i < s.size(); ++i)
     if (s[i] > 0) active_[count_++] = static_cast<int>(i);

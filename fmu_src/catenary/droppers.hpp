@@ -2,22 +2,23 @@
 //
 //   f = max(0, T0 + k e),   e the stretch since the static state
 //
-// is written f = T0 + k e + k s with the slack s >= 0 that a dropper hangs loose by, and f s = 0. Linear but for s,
-// the line answers to it with a compliance matrix, which leaves a linear complementarity problem in s alone. Its
-// matrix is positive definite: there is one solution, and principal pivoting finds it in finitely many steps
+// is written f = T0 + k e + k s with the slack s >= 0 that a dropper hangs loose by, and f s = 0. Linear but for
+// s, the line answers to it with a compliance matrix, which leaves a linear complementarity problem in s alone.
+// Its matrix is positive definite: there is one solution, and principal pivoting finds it in finitely many steps
 // (Murty 1974; by blocks, Kostreva 1978, Judice and Pires 1994).
 #pragma once
 
 #include <Eigen/Cholesky>
 
-#include "matrices.hpp"
+#include "block_cholesky.hpp"
+#include "mesh.hpp"
 
 namespace zspring::catenary {
 
 // How a factorised matrix A answers to unit forces that pull a dropper's ends together, columns of A^-1 B.
 class DropperResponse {
  public:
-  DropperResponse(const Mesh& mesh, const Cholesky& factor, double scale);
+  DropperResponse(const Mesh& mesh, const BlockCholesky& factor, double scale);
 
   const MatrixXd& compliance() const { return compliance_; }  // scale B' A^-1 B, m/N
   void add(int dropper, double factor, VectorXd& x) const;    // x += factor A^-1 b
@@ -58,7 +59,7 @@ class Slackening {
   const VectorXd stiffness_;
   Eigen::VectorXi active_;  // indices of what is slack, the first count_
   Eigen::Index count_ = 0;
-  MatrixXd matrix_;         // workspace
+  MatrixXd matrix_;  // workspace
   VectorXd right_, force_;
   std::vector<char> is_active_;
 };

@@ -69,11 +69,11 @@ void Hht::add_slack(const DropperResponse& response, double factor, const Vector
     if (slack[j] != 0) response.add(j, -factor * line_.shape.stiffness[j] * slack[j], x);
 }
 
-Cholesky Hht::static_factor() const {
+BlockCholesky Hht::static_factor() const {
   SparseMatrix stiffness = line_.stiffness();
   for (int dof = 0; dof < line_.mesh.dofs(); ++dof)
     if (is_anchor(line_.mesh, dof)) stiffness.coeffRef(dof, dof) = 1;
-  return Cholesky(stiffness);
+  return BlockCholesky(stiffness);
 }
 
 LineState Hht::at_rest(const Loads& loads) {
@@ -96,9 +96,9 @@ LineState Hht::at_rest_variation(const Loads& dloads, const VectorXd& slack) {
   LineState d;
   d.u = d.v = d.a = d.internal = VectorXd::Zero(line_.mesh.dofs());
   d.slack = VectorXd::Zero(trial_.size());
-  const Cholesky factor = static_factor();
+  const BlockCholesky factor = static_factor();
   dloads.add_to(d.u, 1);
-  solve(factor, d.u);
+  factor.solve(d.u);
   if (slack.size() > 0 && slack.maxCoeff() > 0) {
     const DropperResponse response(line_.mesh, factor, 1);
     trial_forces(d.u, d.a, 0);
@@ -114,12 +114,12 @@ void Hht::jump(const Loads& l0, const Loads& l1, LineState& s) {
   l1.add_to(x_, 1);
   l0.add_to(x_, -1);
   s.internal -= x_;
-  solve(mass_factor_, x_);
+  mass_factor_.solve(x_);
   s.a += x_;
 }
 
-// Leaves in s.u, s.v the predictors, in s.a the acceleration if no dropper were slack, in mv_ M times the predictor
-// of v.
+// Leaves in s.u, s.v the predictors, in s.a the acceleration if no dropper were slack, in mv_ M times the
+// predictor of v.
 void Hht::predict(const StepFactors& f, const Loads& l1, LineState& s) {
   const Parameters& p = line_.p;
   s.u += f.h * s.v + f.old_position * s.a;
@@ -131,7 +131,7 @@ void Hht::predict(const StepFactors& f, const Loads& l1, LineState& s) {
   x_ += p.damping_mass * mv_;
   s.a = p.hht_alpha * s.internal - weight(line_) * x_;
   l1.add_to(s.a, weight(line_));
-  solve(f.factor, s.a);
+  f.factor.solve(s.a);
 }
 
 // With what the slack droppers do: the state at the end of the step.
@@ -166,7 +166,8 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
   // u' K u from the internal forces, which hold K u, the slack droppers and less the contact forces.
   double strain = s.u.dot(s.internal) - s.u.dot(x_) + l1.dot(s.u);
   for (int j = 0; j < static_cast<int>(s.slack.size()); ++j)
-    if (s.slack[j] != 0) strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
+    if (s.slack[j] != 0)
+      strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
   s.elastic = 0.5 * strain;
 
   s.statistics.steps += 1;
@@ -176,13 +177,23 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
 }
 
 void Hht::step_variation(const StepFactors& f, const Loads& dl1, const LineState& to, LineState& d) {
-  predict(f, dl1, d);
+  if (d.u.isZero(0) && d.v.isZero(0) && d.a.isZero(0) && d.internal.isZero(0)) {
+    // The usual case, a single step: nothing has varied before it.
+    mv_.setZero();
+    dl1.add_to(d.a, weight(line_));
+    f.factor.solve(d.a);
+  } else {
+    predict(f, dl1, d);
+  }
   trial_forces(d.u, d.a, f.beta_h2);
   slackening_.solve_variation(trial_, f.droppers.compliance(), to.slack, d.slack);
   correct(f, d);
+  mv_ += f.gamma_h * ma_;
+  d.kinetic = to.v.dot(mv_);
 }
 
 VectorXd Hht::damping_force(const VectorXd& v) const {
+  if (line_.p.damping_mass == 0 && line_.p.damping_stiffness == 0) return VectorXd::Zero(v.size());
   return line_.p.damping_mass * (line_.matrices.mass * v) + line_.p.damping_stiffness * (line_.matrices.wires * v);
 }
 

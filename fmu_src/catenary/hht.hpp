@@ -19,8 +19,8 @@ struct StepFactors {
   double h;                           // s
   double beta_h2, gamma_h;            // s2, s
   double old_position, old_velocity;  // (1/2 - beta) h^2, (1 - gamma) h
-  Cholesky factor;                    // of M + (1 + hht_alpha) (gamma h C + beta h^2 K)
-  DropperResponse droppers;           // its compliance is that of u at the end of a step to a dropper's force there
+  BlockCholesky factor;               // of M + (1 + hht_alpha) (gamma h C + beta h^2 K)
+  DropperResponse droppers;  // its compliance is that of u at the end of a step to a dropper's force there
 };
 
 class Hht {
@@ -34,10 +34,11 @@ class Hht {
   // At rest in equilibrium under `loads`. Throws std::runtime_error where no equilibrium is found.
   LineState at_rest(const Loads& loads);
   LineState at_rest_variation(const Loads& dloads, const VectorXd& slack);  // slack: of the state at rest
-  // From the loads `l0`, at its begin, to `l1`. False, with `s` without meaning, when no set of slack droppers fits.
+  // From the loads `l0`, at its begin, to `l1`. False, with `s` without meaning, when no set of slack droppers
+  // fits.
   bool step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s);
-  // The same for a variation `d` of the state that the step led to `to` from; what is slack stays slack. Energies
-  // are left out.
+  // The same for a variation `d` of the state that the step led to `to` from; what is slack stays slack. Of
+  // the energies it knows the kinetic one.
   void step_variation(const StepFactors& f, const Loads& dl1, const LineState& to, LineState& d);
   // The contact forces jump from `l0` to `l1` between two steps; HHT's memory goes with them, else the first step
   // would still feel the old ones.
@@ -46,14 +47,14 @@ class Hht {
   VectorXd damping_force(const VectorXd& v) const;
 
  private:
-  Cholesky static_factor() const;
+  BlockCholesky static_factor() const;
   void add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const;
   void predict(const StepFactors& f, const Loads& l1, LineState& s);
   void correct(const StepFactors& f, LineState& s);
   void trial_forces(const VectorXd& u, const VectorXd& a, double beta_h2);
 
   const Line& line_;
-  Cholesky mass_factor_;
+  BlockCholesky mass_factor_;
   Slackening slackening_;
   std::unique_ptr<StepFactors> factors_[4];  // the last used first
   VectorXd x_, y_, mv_, ma_, trial_;         // workspace

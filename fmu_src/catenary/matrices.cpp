@@ -12,22 +12,22 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 // Degrees of freedom of an element: deflection and slope at its begin, then at its end.
 Matrix4d beam_stiffness(const WireParameters& w, double l) {
   Matrix4d bending, tension;
-  bending << 12, 6 * l, -12, 6 * l,                      //
-      6 * l, 4 * l * l, -6 * l, 2 * l * l,               //
-      -12, -6 * l, 12, -6 * l,                           //
+  bending << 12, 6 * l, -12, 6 * l,         //
+      6 * l, 4 * l * l, -6 * l, 2 * l * l,  //
+      -12, -6 * l, 12, -6 * l,              //
       6 * l, 2 * l * l, -6 * l, 4 * l * l;
-  tension << 36, 3 * l, -36, 3 * l,                      //
-      3 * l, 4 * l * l, -3 * l, -l * l,                  //
-      -36, -3 * l, 36, -3 * l,                           //
+  tension << 36, 3 * l, -36, 3 * l,      //
+      3 * l, 4 * l * l, -3 * l, -l * l,  //
+      -36, -3 * l, 36, -3 * l,           //
       3 * l, -l * l, -3 * l, 4 * l * l;
   return w.EI / (l * l * l) * bending + w.tension / (30 * l) * tension;
 }
 
 Matrix4d beam_mass(const WireParameters& w, double l) {
   Matrix4d m;
-  m << 156, 22 * l, 54, -13 * l,                         //
-      22 * l, 4 * l * l, 13 * l, -3 * l * l,             //
-      54, 13 * l, 156, -22 * l,                          //
+  m << 156, 22 * l, 54, -13 * l,              //
+      22 * l, 4 * l * l, 13 * l, -3 * l * l,  //
+      54, 13 * l, 156, -22 * l,               //
       -13 * l, -3 * l * l, -22 * l, 4 * l * l;
   return w.mass * l / 420 * m;
 }
@@ -41,9 +41,7 @@ void add_element(const Matrix4d& block, const int dof[4], Triplets& triplets) {
 
 }  // namespace
 
-bool is_anchor(const Mesh& mesh, int dof) {
-  return dof % 2 == 0 && (dof < 4 || dof >= 4 * (mesh.stations() - 1));
-}
+bool is_anchor(const Mesh& mesh, int dof) { return dof % 2 == 0 && (dof < 4 || dof >= 4 * (mesh.stations() - 1)); }
 
 SparseMatrix hold(const SparseMatrix& matrix, const std::vector<int>& held) {
   SparseMatrix result = matrix;
@@ -53,13 +51,6 @@ SparseMatrix hold(const SparseMatrix& matrix, const std::vector<int>& held) {
   for (int dof : held) result.coeffRef(dof, dof) = 1;
   result.makeCompressed();
   return result;
-}
-
-
-void solve(const Cholesky& factor, VectorXd& x) {
-  factor.matrixL().solveInPlace(x);
-  x.array() /= factor.vectorD().array();
-  factor.matrixU().solveInPlace(x);
 }
 
 Matrices::Matrices(const Parameters& p, const Mesh& mesh) : weight(VectorXd::Zero(mesh.dofs())) {

@@ -1,18 +1,10 @@
 // Finite-element matrices of the two wires: tensioned Euler-Bernoulli beams with consistent mass.
 #pragma once
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
-
 #include "mesh.hpp"
+#include "sparse.hpp"
 
 namespace zspring::catenary {
-
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-// Stations are numbered along the line: the natural order has the least fill, and needs no permutation.
-using Cholesky = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
 struct Spring {
   int dof;
@@ -33,7 +25,5 @@ struct Matrices {
 bool is_anchor(const Mesh& mesh, int dof);
 // The matrix with rows and columns of `held` degrees of freedom replaced by unity.
 SparseMatrix hold(const SparseMatrix& matrix, const std::vector<int>& held);
-// In place, without allocation.
-void solve(const Cholesky& factor, VectorXd& x);
 
 }  // namespace zspring::catenary

@@ -48,9 +48,9 @@ class Mesh {
   // All zero outside the line.
   Place at(double position) const;
 
-  std::vector<double> x;       // m, of the stations
-  std::vector<int> droppers;   // their stations, along the line
-  std::vector<int> supports;   // the stations at span boundaries, the anchors at both ends included
+  std::vector<double> x;      // m, of the stations
+  std::vector<int> droppers;  // their stations, along the line
+  std::vector<int> supports;  // the stations at span boundaries, the anchors at both ends included
 };
 
 }  // namespace zspring::catenary

@@ -46,11 +46,11 @@ struct Parameters {
   double damping_stiffness;     // s
   double gravity;               // m/s2
   Travel travel;
-  double start[pantographs];         // m, Travel::Speed
+  double start[pantographs];           // m, Travel::Speed
   double point_position[most_points];  // m
-  double element;                    // m, longest element
-  double step;                       // s, largest internal step
-  double hht_alpha;                  // [-1/3, 0]
+  double element;                      // m, longest element
+  double step;                         // s, largest internal step
+  double hht_alpha;                    // [-1/3, 0]
 };
 
 // Each reaches its value at the end of the communication step, in a straight line from the last one.
@@ -66,7 +66,8 @@ struct Inputs {
 
 template <class Visitor>
 void visit(Inputs& u, Visitor&& f) {
-  for (PantographInputs& p : u.pantograph) zspring::visit(p.force, f), zspring::visit(p.speed, f), zspring::visit(p.position, f);
+  for (PantographInputs& p : u.pantograph)
+    zspring::visit(p.force, f), zspring::visit(p.speed, f), zspring::visit(p.position, f);
 }
 
 struct WireOutputs {

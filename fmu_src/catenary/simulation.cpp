@@ -12,9 +12,10 @@ namespace {
 [[noreturn]] void refuse_start(const Parameters& p, int i, const Passage& at, double length) {
   char text[200];
   const char* name = p.travel == Travel::Speed ? "start" : "position";
-  std::snprintf(text, sizeof text,
-                "pantograph[%d].%s = %.10g m: must be within the line, 0 to %.10g m, as pantograph[%d].force = %.10g N",
-                i + 1, name, at.position, length, i + 1, at.force);
+  std::snprintf(
+      text, sizeof text,
+      "pantograph[%d].%s = %.10g m: must be within the line, 0 to %.10g m, as pantograph[%d].force = %.10g N",
+      i + 1, name, at.position, length, i + 1, at.force);
   throw ParameterError(text);
 }
 
@@ -42,9 +43,10 @@ bool Simulation::stays_on_line(const CommunicationStep& step, AdvanceFailure& fa
       const Passage here = step.at(i, k / n * step.length());
       if (here.force == 0 || line_.mesh.contains(here.position)) continue;
       failure.time = k / n * step.length();
-      std::snprintf(failure.text, sizeof failure.text,
-                    "pantograph[%d].x = %.10g m: must be within the line, 0 to %.10g m, while its force is %.10g N",
-                    i + 1, here.position, facts_.length, here.force);
+      std::snprintf(
+          failure.text, sizeof failure.text,
+          "pantograph[%d].x = %.10g m: must be within the line, 0 to %.10g m, while its force is %.10g N", i + 1,
+          here.position, facts_.length, here.force);
       return false;
     }
   return true;

@@ -13,8 +13,8 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  // Over `length` > 0 s. False, with the state as before, where a pantograph that presses leaves the line, or where
-  // the slack droppers could not be found.
+  // Over `length` > 0 s. False, with the state as before, where a pantograph that presses leaves the line, or
+  // where the slack droppers could not be found.
   bool advance(const Parameters&, const Inputs& inputs, double length, AdvanceFailure& failure);
 
   Outputs outputs() const;
@@ -44,8 +44,7 @@ class Simulation {
   double dropper_force(int dropper) const;
   // derivatives.cpp
   Outputs change(const LineState& d) const;
-  void vary_energies(const CommunicationStep& step, const CommunicationStep& change, double tau0, double tau1,
-                     const LineState& from, const LineState& to, const LineState& dfrom, LineState& dto) const;
+  void vary_energies(const Loads& l1, double h, const LineState& to, LineState& d) const;
 
   Line line_;
   Hht hht_;

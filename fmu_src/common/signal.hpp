@@ -28,7 +28,7 @@ class ParameterError : public std::invalid_argument {
 
 // Why a communication step was not made.
 struct AdvanceFailure {
-  double time = 0;       // s since the begin of the communication step
+  double time = 0;      // s since the begin of the communication step
   char text[256] = "";  // for the log
 };
 

@@ -37,27 +37,27 @@ Binding bind() = delete;  // see above
 
 }  // namespace zspring::fmi
 
-#define PARAMETER(id, member)                                                                              \
-  template <>                                                                                              \
-  constexpr Binding bind<Id::id>() {                                                                       \
-    Binding b;                                                                                             \
+#define PARAMETER(id, member)                                                                                \
+  template <>                                                                                                \
+  constexpr Binding bind<Id::id>() {                                                                         \
+    Binding b;                                                                                               \
     b.parameter = [](const Parameters& p, [[maybe_unused]] int i) { return static_cast<double>(p.member); }; \
-    b.set_parameter = [](Parameters& p, [[maybe_unused]] int i, double x) { assign(p.member, x); };        \
-    return b;                                                                                              \
+    b.set_parameter = [](Parameters& p, [[maybe_unused]] int i, double x) { assign(p.member, x); };          \
+    return b;                                                                                                \
   }
-#define CALCULATED(id, member)                                                                \
-  template <>                                                                                 \
-  constexpr Binding bind<Id::id>() {                                                          \
-    Binding b;                                                                                \
+#define CALCULATED(id, member)                                                                     \
+  template <>                                                                                      \
+  constexpr Binding bind<Id::id>() {                                                               \
+    Binding b;                                                                                     \
     b.calculated = [](const Calculated& c, [[maybe_unused]] int i) -> double { return c.member; }; \
-    return b;                                                                                 \
+    return b;                                                                                      \
   }
-#define INPUT(id, member)                                                             \
-  template <>                                                                         \
-  constexpr Binding bind<Id::id>() {                                                  \
-    Binding b;                                                                        \
-    b.input = [](Inputs& u, [[maybe_unused]] int i) -> Signal& { return u.member; };  \
-    return b;                                                                         \
+#define INPUT(id, member)                                                            \
+  template <>                                                                        \
+  constexpr Binding bind<Id::id>() {                                                 \
+    Binding b;                                                                       \
+    b.input = [](Inputs& u, [[maybe_unused]] int i) -> Signal& { return u.member; }; \
+    return b;                                                                        \
   }
 #define OUTPUT(id, member)                                                                  \
   template <>                                                                               \

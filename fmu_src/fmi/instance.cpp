@@ -37,8 +37,7 @@ bool same_type(Type a, Type b) {
 }  // namespace
 
 const Variable& Instance::variable(unsigned reference, Type type) const {
-  if (reference >= variable_count)
-    refuse("value reference %u: must be below %u", reference, variable_count);
+  if (reference >= variable_count) refuse("value reference %u: must be below %u", reference, variable_count);
   const Variable& v = variables[reference];
   if (!same_type(v.type, type)) refuse("%s: is of type %s, not %s", v.name, type_name(v.type), type_name(type));
   return v;
@@ -194,8 +193,8 @@ fmi2Status Instance::step(double from, double length) {
   outputs_.reset();
   if (!s.advance(parameters_, inputs_, length, failure)) {
     phase = StepFailed;
-    std::snprintf(text, sizeof text, "t = %.10g s: %s. The state is that of %.10g s", from + failure.time, failure.text,
-                  time_);
+    std::snprintf(text, sizeof text, "t = %.10g s: %s. The state is that of %.10g s", from + failure.time,
+                  failure.text, time_);
     log.write(fmi2Discard, Category::logStatusDiscard, text);
     return fmi2Discard;
   }

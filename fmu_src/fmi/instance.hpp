@@ -80,7 +80,7 @@ class Instance {
   double time_;
   bool stepped_;
   std::optional<Simulation> simulation_;
-  Parameters modelled_;  // of simulation_
+  Parameters modelled_;             // of simulation_
   std::optional<Outputs> outputs_;  // of the present state, made when asked for
 };
 

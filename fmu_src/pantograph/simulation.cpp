@@ -105,8 +105,7 @@ bool Simulation::run(SimulationState& state, const Held& held, OnStep&& on_step,
 }
 
 template <class OnStep>
-bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_step,
-                           Unsolved& unsolved) const {
+bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_step, Unsolved& unsolved) const {
   const Parameters& p = mechanics_.parameters;
   MechanicalState& s = state.mechanical;
   Bench bench(state.bench);
@@ -144,8 +143,7 @@ bool Simulation::run_bench(SimulationState& state, const Held& held, OnStep& on_
 }
 
 template <class OnStep>
-bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on_step,
-                            Unsolved& unsolved) const {
+bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on_step, Unsolved& unsolved) const {
   const Parameters& p = mechanics_.parameters;
   const double H = held.length;
   MechanicalState& s = state.mechanical;
@@ -190,8 +188,9 @@ bool Simulation::advance(const Parameters& tuned, const Inputs& inputs, double l
 
 void Simulation::describe_run(char* text, int size) const {
   const Statistics& n = state_.mechanical.statistics;
-  std::snprintf(text, static_cast<size_t>(size), "%.0f steps, %.3g iterations a step, at most %.0f, %.0f refinements",
-                n.steps, n.steps > 0 ? n.iterations / n.steps : 0, n.iterations_max, n.refinements);
+  std::snprintf(text, static_cast<size_t>(size),
+                "%.0f steps, %.3g iterations a step, at most %.0f, %.0f refinements", n.steps,
+                n.steps > 0 ? n.iterations / n.steps : 0, n.iterations_max, n.refinements);
 }
 
 const char* Simulation::describe_step(char* text, int size) const {
