@@ -262,6 +262,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
   return guarded(c, any_phase, "fmi2DeSerializeFMUstate", [&](Instance&) {
     need(bytes, 1, "serializedState"), need(state, 1, "FMUstate");
     State numbers = deserialize(bytes, size);
+    Instance::check_state(numbers);
     if (*state)
       *static_cast<State*>(*state) = std::move(numbers);
     else

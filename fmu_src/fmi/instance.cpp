@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 namespace zspring::fmi {
 namespace {
@@ -234,11 +235,16 @@ struct Writer {
 
 struct Reader {
   const double* in;
-  void operator()(double& x) { x = *in++; }
-  void operator()(bool& x) { x = *in++ != 0; }
+  const double* end;
+  const double* next(std::ptrdiff_t n) {
+    if (end - in < n) throw Refusal("FMU state: ends before all its values are there");
+    return std::exchange(in, in + n);
+  }
+  void operator()(double& x) { x = *next(1); }
+  void operator()(bool& x) { x = *next(1) != 0; }
   template <class Vector>
   void operator()(Vector& x) {
-    for (double& e : x.reshaped()) e = *in++;
+    std::copy_n(next(x.size()), x.size(), x.data());
   }
 };
 
@@ -255,17 +261,29 @@ std::vector<double> Instance::snapshot() {
 }
 
 void Instance::restore(const std::vector<double>& numbers) {
-  Reader read{numbers.data()};
+  Reader read{numbers.data(), numbers.data() + numbers.size()};
   double stored_phase;
   read(stored_phase);
   phase = static_cast<Phase>(stored_phase);
   visit_values(read);
+  for (const Variable& v : variables)
+    if (v.is_parameter()) check_value(v, v.get(parameters_));
   bool has_simulation;
   read(has_simulation);
   outputs_.reset();
   // Hosts that iterate restore at every step: a model of the same parameters is kept, only its state is replaced.
   if (!has_simulation || !is_model_of(parameters_)) simulation_.reset();
   if (has_simulation) simulation().visit_state(read);
+  if (read.in != read.end) throw Refusal("FMU state: goes on after its last value");
+}
+
+void Instance::check_state(const std::vector<double>& numbers) {
+  for (double x : numbers)
+    if (!std::isfinite(x)) throw Refusal("FMU state: holds a value that is not finite");
+  Instance trial({}, "", false);
+  trial.restore(numbers);
+  const unsigned p = trial.phase;
+  if (p == 0 || p > Error || (p & (p - 1)) != 0) refuse("FMU state: %u is no state of an FMU", p);
 }
 
 }  // namespace zspring::fmi

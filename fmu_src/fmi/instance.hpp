@@ -62,6 +62,8 @@ class Instance {
   // Everything but the log settings, as numbers.
   std::vector<double> snapshot();
   void restore(const std::vector<double>& numbers);
+  // Throws where numbers from outside the process could not be restored.
+  static void check_state(const std::vector<double>& numbers);
 
   Phase phase;
   Log log;
