@@ -94,7 +94,7 @@ LineState Hht::at_rest(const Loads& loads) {
 
 LineState Hht::at_rest_variation(const Loads& dloads, const VectorXd& slack) {
   LineState d;
-  d.u = d.v = d.a = d.internal = VectorXd::Zero(line_.mesh.dofs());
+  d.u = d.v = d.a = d.a_slope = d.internal = VectorXd::Zero(line_.mesh.dofs());
   d.slack = VectorXd::Zero(trial_.size());
   const BlockCholesky factor = static_factor();
   dloads.add_to(d.u, 1);
@@ -147,12 +147,19 @@ void Hht::correct(const StepFactors& f, LineState& s) {
 bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s) {
   const Parameters& p = line_.p;
   const double work_before = l0.dot(s.u) + l1.dot(s.u);
+  // To where a step of another length expects it, else steps of changing lengths are of first order.
+  if (s.h > 0 && s.h != f.h) s.a += p.hht_alpha * (f.h - s.h) * s.a_slope;
+  // A sliver of a step says little of the slope and would have it magnified by the next.
+  const bool slope_known = f.h >= 0.25 * s.h;
+  if (slope_known) s.a_slope = s.a;
   predict(f, l1, s);
   trial_forces(s.u, s.a, f.beta_h2);
   trial_ += line_.shape.tension;
   const int solved = slackening_.solve(trial_, f.droppers.compliance(), s.slack);
   if (solved < 0 || !s.a.allFinite()) return false;
   correct(f, s);
+  if (slope_known) s.a_slope = (s.a - s.a_slope) / f.h;
+  s.h = f.h;
 
   // Energies; mv_ becomes M v, x_ the damping force.
   mv_ += f.gamma_h * ma_;
