@@ -1,7 +1,7 @@
 // Counts heap allocations inside fmi2DoStep of a built FMU.
 //
-//   count_allocations LIBRARY GUID STEP COUNT [VR=VALUE ...]   sets Integers (enumerations), then runs COUNT steps
-//   of STEP s and prints the allocations in all fmi2DoStep calls and, to show that counting works, in one
+//   count_allocations LIBRARY GUID STEP COUNT [rVR=VALUE | iVR=VALUE ...]   sets Reals and Integers (enumerations), then
+//   runs COUNT steps of STEP s and prints the allocations in all fmi2DoStep calls and, to show that counting works, in one
 //   fmi2Instantiate.
 #include <dlfcn.h>
 
@@ -64,10 +64,14 @@ int main(int argc, char** argv) {
   const long in_instantiate = allocations - before;
   if (!c) return 4;
   for (int i = 5; i < argc; ++i) {
+    char type;
     unsigned vr;
-    int value;
-    if (std::sscanf(argv[i], "%u=%d", &vr, &value) != 2) return 2;
-    if (load<fmi2SetIntegerTYPE>(library, "fmi2SetInteger")(c, &vr, 1, &value) != fmi2OK) return 5;
+    double real;
+    if (std::sscanf(argv[i], "%c%u=%lf", &type, &vr, &real) != 3) return 2;
+    const int integer = static_cast<int>(real);
+    const fmi2Status status = type == 'r' ? load<fmi2SetRealTYPE>(library, "fmi2SetReal")(c, &vr, 1, &real)
+                                          : load<fmi2SetIntegerTYPE>(library, "fmi2SetInteger")(c, &vr, 1, &integer);
+    if (status != fmi2OK) return 5;
   }
   load<fmi2SetupExperimentTYPE>(library, "fmi2SetupExperiment")(c, 0, 0, 0, 0, 0);
   load<fmi2EnterInitializationModeTYPE>(library, "fmi2EnterInitializationMode")(c);
