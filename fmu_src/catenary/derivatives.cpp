@@ -1,4 +1,6 @@
 // Derivatives of the outputs, with respect to time and to the inputs.
+#include <utility>
+
 #include "simulation.hpp"
 
 namespace zspring::catenary {
@@ -48,24 +50,15 @@ Outputs Simulation::output_rates() const {
   d.v = s.a;
   const Loads loads = loads_at(line_.mesh, s.passage);
   d.kinetic = s.v.dot(line_.matrices.mass * s.a);
-  d.dissipated = s.loss_power;
+  d.dissipated = s.v.dot(s.damping);
   d.work = loads.dot(s.v);
-  d.elastic = s.v.dot(s.internal) - s.loss_power + d.work;
+  d.elastic = s.v.dot(s.internal) - d.dissipated + d.work;
   const CommunicationStep step(line_, before_.passage, held_, length_);
   for (int i = 0; i < pantographs; ++i) {
     d.passage[i].position = s.passage[i].speed;
     if (length_ > 0) d.passage[i].speed = step.speed_rate(i);
   }
   return change(d);
-}
-
-// Of the variation `d` of `to`, the state that an internal step of h s led to, what it needs no step for.
-void Simulation::vary_energies(const Loads& l1, double h, const LineState& to, LineState& d) const {
-  const VectorXd damping = hht_.damping_force(to.v);
-  d.elastic = d.u.dot(to.internal) - d.u.dot(damping) + l1.dot(d.u);
-  const double power = 2 * d.v.dot(damping);
-  d.dissipated += 0.5 * h * (d.loss_power + power);
-  d.loss_power = power;
 }
 
 Outputs Simulation::outputs_change(const Inputs& direction) {
@@ -106,20 +99,26 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
   Loads none = dl0;
   for (PointLoad& l : none.on) l.value.setZero();
   hht_.jump(none, dl0, d);
-  LineState again;  // the steps before the last are done again
+  LineState now, next;  // the steps before the last are done again
   if (n > 1) {
-    again = before_;
-    hht_.jump(loads_at(line_.mesh, before_.passage), l0, again);
+    now = before_;
+    hht_.jump(loads_at(line_.mesh, before_.passage), l0, now);
   }
+  const LineState& from = n > 1 ? now : before_;
   for (double k = 1; k <= n; ++k) {
     const Loads l1 = step.loads(k / n * length_), dl1 = step.loads_change(change_of, k / n * length_);
-    const double lifted = dl0.dot(k > 1 ? again.u : before_.u) + dl1.dot(k > 1 ? again.u : before_.u);
-    const double lifted_change = l0.dot(d.u) + l1.dot(d.u);
-    if (k < n) hht_.step(factors, l0, l1, again);
-    const LineState& to = k < n ? again : state_;
+    if (k < n) {
+      next = now;
+      hht_.step(factors, l0, l1, next);
+    }
+    const LineState& to = k < n ? next : state_;
+    const VectorXd old_dv = d.v;
+    d.work -= 0.5 * (dl0.dot(from.u) + dl1.dot(from.u) + l0.dot(d.u) + l1.dot(d.u));
     hht_.step_variation(factors, dl1, to, d);
-    vary_energies(l1, factors.h, to, d);
-    d.work += 0.5 * (dl0.dot(to.u) + dl1.dot(to.u) - lifted + l0.dot(d.u) + l1.dot(d.u) - lifted_change);
+    d.work += 0.5 * (dl0.dot(to.u) + dl1.dot(to.u) + l0.dot(d.u) + l1.dot(d.u));
+    d.dissipated += 0.5 * factors.h * (old_dv.dot(from.damping + to.damping) + d.v.dot(from.damping + to.damping));
+    d.elastic = d.u.dot(to.internal) - d.u.dot(to.damping) + l1.dot(d.u);
+    if (k < n) std::swap(now, next);
     l0 = l1;
     dl0 = dl1;
   }

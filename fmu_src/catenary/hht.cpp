@@ -42,6 +42,7 @@ Hht::Hht(const Line& line)
       y_(line.mesh.dofs()),
       mv_(line.mesh.dofs()),
       ma_(line.mesh.dofs()),
+      old_v_(line.mesh.dofs()),
       trial_(line.shape.stiffness.size()) {
   factors(line.p.step);
 }
@@ -94,7 +95,7 @@ LineState Hht::at_rest(const Loads& loads) {
 
 LineState Hht::at_rest_variation(const Loads& dloads, const VectorXd& slack) {
   LineState d;
-  d.u = d.v = d.a = d.a_slope = d.internal = VectorXd::Zero(line_.mesh.dofs());
+  d.u = d.v = d.a = d.a_slope = d.internal = d.damping = VectorXd::Zero(line_.mesh.dofs());
   d.slack = VectorXd::Zero(trial_.size());
   const BlockCholesky factor = static_factor();
   dloads.add_to(d.u, 1);
@@ -152,6 +153,7 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
   // A sliver of a step says little of the slope and would have it magnified by the next.
   const bool slope_known = f.h >= 0.25 * s.h;
   if (slope_known) s.a_slope = s.a;
+  old_v_ = s.v;
   predict(f, l1, s);
   trial_forces(s.u, s.a, f.beta_h2);
   trial_ += line_.shape.tension;
@@ -161,17 +163,17 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
   if (slope_known) s.a_slope = (s.a - s.a_slope) / f.h;
   s.h = f.h;
 
-  // Energies; mv_ becomes M v, x_ the damping force.
+  // Energies; mv_ becomes M v. The loss at the mean velocity: with hht_alpha = 0 and no change of the slack
+  // droppers the energies then balance to rounding.
   mv_ += f.gamma_h * ma_;
   s.kinetic = 0.5 * s.v.dot(mv_);
+  s.dissipated += 0.25 * f.h * old_v_.dot(s.damping);
   x_.noalias() = line_.matrices.wires * s.v;
-  x_ = p.damping_stiffness * x_ + p.damping_mass * mv_;
-  const double power = s.v.dot(x_);
-  s.dissipated += 0.5 * f.h * (s.loss_power + power);
-  s.loss_power = power;
+  s.damping = p.damping_stiffness * x_ + p.damping_mass * mv_;
+  s.dissipated += 0.25 * f.h * (2 * old_v_.dot(s.damping) + s.v.dot(s.damping));
   s.work += 0.5 * (l0.dot(s.u) + l1.dot(s.u) - work_before);
   // u' K u from the internal forces, which hold K u, the slack droppers and less the contact forces.
-  double strain = s.u.dot(s.internal) - s.u.dot(x_) + l1.dot(s.u);
+  double strain = s.u.dot(s.internal) - s.u.dot(s.damping) + l1.dot(s.u);
   for (int j = 0; j < static_cast<int>(s.slack.size()); ++j)
     if (s.slack[j] != 0)
       strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
@@ -197,11 +199,6 @@ void Hht::step_variation(const StepFactors& f, const Loads& dl1, const LineState
   correct(f, d);
   mv_ += f.gamma_h * ma_;
   d.kinetic = to.v.dot(mv_);
-}
-
-VectorXd Hht::damping_force(const VectorXd& v) const {
-  if (line_.p.damping_mass == 0 && line_.p.damping_stiffness == 0) return VectorXd::Zero(v.size());
-  return line_.p.damping_mass * (line_.matrices.mass * v) + line_.p.damping_stiffness * (line_.matrices.wires * v);
 }
 
 }  // namespace zspring::catenary

@@ -44,8 +44,6 @@ class Hht {
   // would still feel the old ones.
   void jump(const Loads& l0, const Loads& l1, LineState& s);
 
-  VectorXd damping_force(const VectorXd& v) const;
-
  private:
   BlockCholesky static_factor() const;
   void add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const;
@@ -56,8 +54,8 @@ class Hht {
   const Line& line_;
   BlockCholesky mass_factor_;
   Slackening slackening_;
-  std::unique_ptr<StepFactors> factors_[4];  // the last used first
-  VectorXd x_, y_, mv_, ma_, trial_;         // workspace
+  std::unique_ptr<StepFactors> factors_[4];   // the last used first
+  VectorXd x_, y_, mv_, ma_, old_v_, trial_;  // workspace
 };
 
 }  // namespace zspring::catenary

@@ -62,9 +62,9 @@ struct LineState {
   VectorXd a;         // HHT's acceleration, which belongs to t + hht_alpha h
   VectorXd a_slope;   // its rate
   VectorXd internal;  // N and N m: C v + K u + slack droppers - contact forces
+  VectorXd damping;   // N and N m: C v
   VectorXd slack;     // m, of the droppers
   double kinetic = 0, elastic = 0, dissipated = 0, work = 0;  // J; elastic from the unloaded static state
-  double loss_power = 0;                                      // W
   double h = 0;                                               // s, of the last step; 0 before the first
   Passage passage[pantographs];
   Statistics statistics;
@@ -72,8 +72,8 @@ struct LineState {
 
 template <class Visitor>
 void visit(LineState& s, Visitor&& f) {
-  f(s.u), f(s.v), f(s.a), f(s.a_slope), f(s.internal), f(s.slack), f(s.h);
-  f(s.kinetic), f(s.elastic), f(s.dissipated), f(s.work), f(s.loss_power);
+  f(s.u), f(s.v), f(s.a), f(s.a_slope), f(s.internal), f(s.damping), f(s.slack), f(s.h);
+  f(s.kinetic), f(s.elastic), f(s.dissipated), f(s.work);
   for (Passage& p : s.passage) f(p.position), f(p.speed), f(p.force);
   f(s.statistics.steps), f(s.statistics.iterations), f(s.statistics.iterations_max);
 }

@@ -44,7 +44,6 @@ class Simulation {
   double dropper_force(int dropper) const;
   // derivatives.cpp
   Outputs change(const LineState& d) const;
-  void vary_energies(const Loads& l1, double h, const LineState& to, LineState& d) const;
 
   Line line_;
   Hht hht_;
