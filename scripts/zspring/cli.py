@@ -6,6 +6,7 @@ import sys
 
 import click
 
+from .couple.command import couple
 from .errors import ZSpringError
 from .frf.command import frf
 from .identify.command import identify
@@ -26,7 +27,7 @@ def commands() -> None:
     """DSA-380 pantograph with Z-spring head suspension, as an FMI 2.0 co-simulation FMU."""
 
 
-for command in (frf, simulate, identify, info, static, newton, integrators, mechanism, linearize, study):
+for command in (frf, simulate, identify, info, static, newton, integrators, mechanism, linearize, study, couple):
     commands.add_command(command)
 
 

@@ -11,7 +11,7 @@ from fmpy.model_description import ScalarVariable
 
 from .errors import ZSpringError, did_you_mean
 from .options import fmu_option, opened
-from .parameter_sets import describe_set, packaged_sets
+from .parameter_sets import LINES, PANTOGRAPHS, describe_set, packaged_sets
 from .variables import Variables, parse, text
 
 
@@ -58,19 +58,21 @@ def _bounds(variable: ScalarVariable) -> str:
 def set_lines() -> list[str]:
     """Name of each parameter set in the package with its source and how far it is trusted."""
     lines = []
-    for name, path in packaged_sets().items():
-        description, remarks = describe_set(path)
-        marked = [f"{remark}: {', '.join(parameters)}" for remark, parameters in remarks.items()]
-        lines.append(name)
-        for line in [description, *marked]:
-            lines += textwrap.wrap(line, 110, initial_indent="    ", subsequent_indent="    ")
+    for heading, kind in ("Pantographs, for --parameters", PANTOGRAPHS), ("Lines, for --line", LINES):
+        lines.append(heading)
+        for name, path in packaged_sets(kind).items():
+            description, remarks = describe_set(path)
+            marked = [f"{remark}: {', '.join(parameters)}" for remark, parameters in remarks.items()]
+            lines.append(f"  {name}")
+            for line in [description, *marked]:
+                lines += textwrap.wrap(line, 110, initial_indent="      ", subsequent_indent="      ")
     return lines
 
 
 @click.command()
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option("--path", "only_path", is_flag=True, help="Print only where the FMU is.")
-@click.option("--sets", is_flag=True, help="List the parameter sets of pantographs, each with its source.")
+@click.option("--sets", is_flag=True, help="List the parameter sets of pantographs and lines, each with its source.")
 @fmu_option
 def info(names, only_path, sets, fmu_path) -> None:
     """List the FMU's variables, or those with these NAMEs (zspring.* for all that begin so).

@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from .fmu import Fmu
-from .parameter_sets import find_set, read_set
+from .parameter_sets import PANTOGRAPHS, find_set, read_set
 from .variables import Value
 
 MOST_NUMBERS = 100_000
@@ -101,13 +101,18 @@ def opened(path: Path | None) -> Iterator[Fmu]:
 
 
 def chosen_parameters(
-    fmu: Fmu, parameter_set: str | None, assignments: Iterable[str], but_not: Sequence[str] = ()
+    fmu: Fmu,
+    parameter_set: str | None,
+    assignments: Iterable[str],
+    but_not: Sequence[str] = (),
+    kind: str = PANTOGRAPHS,
 ) -> dict[str, Value]:
     """Parameters of the FMU from --parameters and --set.
 
     but_not     parameters that the command sets itself: passed over in a set, refused in an assignment
+    kind        of the sets in the package
     """
-    values = read_set(find_set(parameter_set), fmu) if parameter_set else {}
+    values = read_set(find_set(parameter_set, kind), fmu) if parameter_set else {}
     return {
         **{name: value for name, value in values.items() if name not in but_not},
         **fmu.variables.parse_assignments(assignments, but_not),

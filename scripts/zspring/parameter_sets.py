@@ -19,6 +19,7 @@ from .fmu import Fmu
 from .variables import Value, parse, text
 
 SUFFIX = ".ssv"
+PANTOGRAPHS, LINES = "parameter_sets", "lines"  # folders of resources
 _SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 _SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
 _NAMESPACES = {"ssv": _SSV, "ssc": _SSC}
@@ -27,15 +28,15 @@ _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 BaseUnit = tuple[tuple[int, ...], float, float]  # exponents as in _BASE_UNITS; factor, offset to base units
 
 
-def packaged_sets() -> dict[str, Path]:
-    """Files of the sets in this package by name."""
-    folder = Path(str(importlib.resources.files(__package__) / "resources" / "parameter_sets"))
+def packaged_sets(kind: str = PANTOGRAPHS) -> dict[str, Path]:
+    """Files of the sets of a kind, PANTOGRAPHS or LINES, in this package by name."""
+    folder = Path(str(importlib.resources.files(__package__) / "resources" / kind))
     return {path.stem: path for path in sorted(folder.glob(f"*{SUFFIX}"))}
 
 
-def find_set(name_or_file: str) -> Path:
+def find_set(name_or_file: str, kind: str = PANTOGRAPHS) -> Path:
     """The file of a set in this package, or that of a path. Raises ZSpringError if there is neither."""
-    known = packaged_sets()
+    known = packaged_sets(kind)
     if name_or_file in known:
         return known[name_or_file]
     path = Path(name_or_file)

@@ -1,0 +1,1 @@
+"""Co-simulation of one or two pantographs with a catenary."""

@@ -1,0 +1,77 @@
+"""What the coupling costs in accuracy: one run with several schemes and communication steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .result import LineResult
+from .schemes import Coupling
+
+STEPS = (0.5e-3, 1e-3, 2e-3, 5e-3)  # s
+COMPARED = ("explicit", "implicit")
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One run against the reference."""
+
+    scheme: str
+    step: float  # s
+    rms: float  # N, error of the contact force
+    largest: float  # N
+    mean: float  # N, of the contact force
+    deviation: float  # N
+    elapsed: float  # s
+
+
+def compare_steps(
+    run: Callable[[float, Coupling, Mapping[str, float], Mapping[str, float]], LineResult],
+    coupling: Coupling,
+    travelled_from: float,
+    steps: Sequence[float] = STEPS,
+    schemes: Sequence[str] = COMPARED,
+) -> Iterator[Comparison]:
+    """Errors of the schemes at these communication steps, against implicit coupling at the smallest one.
+
+    run             makes a run: step in s, coupling, more parameters of the catenary and of the pantographs
+    travelled_from  distance from the start at which the comparison begins, m
+
+    The FMUs' internal step is the smallest communication step in all runs. There implicit coupling is the
+    monolithic solution, so that the coupling alone makes the difference. Unfiltered forces are compared at
+    the communication points of each run. The first row is the reference.
+    """
+    fine = min(steps)
+    internal = {"solver.step": fine}
+
+    def compare(scheme: str, step: float, reference: LineResult | None) -> tuple[LineResult, Comparison]:
+        result = run(step, replace(coupling, scheme=scheme), internal, internal)
+        exact = (reference or result).contact_force[:: round(step / fine)]
+        rows = min(len(exact), len(result.contact_force))
+        used = (result.position[:rows] - result.position[0])[:, 0] >= travelled_from
+        force = result.contact_force[:rows][used]
+        error = np.abs(force - exact[:rows][used])
+        rms = float(np.sqrt(np.mean(error**2)))
+        numbers = float(error.max()), float(force.mean()), float(force.std()), result.elapsed
+        return result, Comparison(scheme, step, rms, *numbers)
+
+    reference, first = compare("implicit", fine, None)
+    cases = [(scheme, step) for scheme in schemes for step in steps if (scheme, step) != ("implicit", fine)]
+    yield first
+    for case in cases:
+        yield compare(*case, reference)[1]
+
+
+def comparison_table(rows: Sequence[Comparison]) -> list[str]:
+    """Lines by scheme and step."""
+    lines = [f"{'':18s}{'error of the force, N':>22s}{'contact force, N':>22s}"]
+    lines.append(
+        f"{'coupling':10s}{'step':>8s}{'rms':>11s}{'largest':>11s}{'mean':>11s}{'deviation':>11s}{'time':>10s}"
+    )
+    for i, row in enumerate(rows):
+        errors = f"{row.rms:11.3g}{row.largest:11.3g}" if i else f"{'reference':>22s}"
+        figures = f"{row.mean:11.2f}{row.deviation:11.2f}{row.elapsed:8.2f} s"
+        lines.append(f"{row.scheme:10s}{1e3 * row.step:5g} ms{errors}{figures}")
+    return lines

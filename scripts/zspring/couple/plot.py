@@ -1,0 +1,120 @@
+"""Figures of runs along a line. Nothing is simulated or filtered here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..figures import new_figure
+from .compare import Comparison
+from .result import LineResult
+
+COLOURS = ("tab:blue", "tab:orange")
+SLIPPING = 0.99  # share of Mf from which a joint is drawn as slipping; the tanh law creeps below it
+
+
+def line_figure(result: LineResult, filtered: np.ndarray | None, title: str) -> Figure:
+    """Contact force, wire and head, friction state of the Z-spring and slack droppers along the line.
+
+    filtered    contact force 0-20 Hz in N, (n, p); None where the run is too short for that
+    """
+    has_friction = bool(np.any(result.moment))
+    heights = [2.2, 1.6, *([1.4] if has_friction else []), 0.7]
+    figure = new_figure(11, 1.6 * sum(heights))
+    panels = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    _draw_force(panels[0], result, filtered)
+    _draw_heights(panels[1], result)
+    if has_friction:
+        _draw_friction(panels[2], result)
+    panels[-1].fill_between(result.position[:, 0], result.slack_droppers, step="post", color="0.45")
+    panels[-1].set_ylabel("slack\ndroppers")
+    panels[-1].set_ylim(0, max(2, 1.1 * result.slack_droppers.max()))
+    for axes in panels:
+        axes.grid(True, axis="y", linewidth=0.4, alpha=0.5)
+        for support in result.support_position:
+            axes.axvline(support, color="0.8", linewidth=0.8, zorder=0)
+    panels[0].set_title(title)
+    panels[-1].set_xlabel("position along the line  [m], supports as vertical lines")
+    panels[-1].set_xlim(result.position.min(), result.position.max())
+    return figure
+
+
+def _draw_force(axes: Axes, result: LineResult, filtered: np.ndarray | None) -> None:
+    for i, name in enumerate(_names(result)):
+        position = result.position[:, i]
+        axes.plot(position, result.contact_force[:, i], color=COLOURS[i], linewidth=0.5, alpha=0.4)
+        if filtered is not None:
+            axes.plot(position, filtered[:, i], color=COLOURS[i], linewidth=1.3, label=f"{name}0-20 Hz")
+    axes.set_ylabel("contact force  [N]")
+    if filtered is not None:
+        axes.set_ylim(bottom=min(0.0, filtered.min()))
+        _legend(axes)
+
+
+def _draw_heights(axes: Axes, result: LineResult) -> None:
+    for i, name in enumerate(_names(result)):
+        position = result.position[:, i]
+        axes.plot(position, 1e3 * result.wire_height[:, i], color=COLOURS[i], label=f"{name}wire")
+        axes.plot(
+            position,
+            1e3 * result.head_height[:, i],
+            color="0.2",
+            linewidth=0.8,
+            linestyle="--",
+            label=f"{name}head",
+        )
+    axes.set_ylabel("height  [mm]")
+    _legend(axes)
+
+
+def _draw_friction(axes: Axes, result: LineResult) -> None:
+    """Moments as a share of Mf, of the first pantograph; a mark below wherever a joint slips."""
+    position, share = result.position[:, 0], result.moment[:, 0] / result.friction_bound[0]
+    joints = ("α, head side", "tab:green", "-"), ("β, frame side", "tab:purple", "--")
+    for joint, (name, colour, style) in enumerate(joints):
+        axes.plot(position, share[:, joint], style, color=colour, linewidth=0.9, label=name)
+        slips = np.abs(share[:, joint]) >= SLIPPING
+        axes.fill_between(
+            position,
+            -1.25 - 0.15 * joint,
+            -1.15 - 0.15 * joint,
+            where=slips,
+            color=colour,
+            linewidth=0,
+            label=f"slips, {100 * slips.mean():.0f} %",
+        )
+    axes.set_ylim(-1.5, 1.15)
+    axes.set_ylabel("friction moment\n/ Mf")
+    _legend(axes)
+
+
+def _names(result: LineResult) -> Sequence[str]:
+    count = result.position.shape[1]
+    return [""] if count == 1 else [f"pantograph {i + 1}, " for i in range(count)]
+
+
+def _legend(axes: Axes) -> None:
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+
+
+def comparison_figure(rows: Sequence[Comparison], title: str) -> Figure:
+    """Error of the contact force by communication step; the first row is the reference."""
+    figure = new_figure(6.5, 4.5)
+    axes = figure.subplots()
+    for scheme, colour in zip(dict.fromkeys(row.scheme for row in rows[1:]), ("tab:red", "tab:blue")):
+        own = [row for row in rows[1:] if row.scheme == scheme]
+        steps = [1e3 * row.step for row in own]
+        axes.loglog(steps, [row.rms for row in own], "o-", color=colour, label=f"{scheme}, rms")
+        axes.loglog(steps, [row.largest for row in own], "o:", color=colour, label=f"{scheme}, largest")
+    ticks = sorted({1e3 * row.step for row in rows})
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks], minor=False)
+    axes.tick_params(axis="x", which="minor", labelbottom=False)
+    axes.set_xlabel("communication step  [ms]")
+    axes.set_ylabel("error of the contact force  [N]")
+    axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
+    axes.legend(fontsize=8)
+    axes.set_title(title)
+    return figure

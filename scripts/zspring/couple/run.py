@@ -1,0 +1,214 @@
+"""A run of pantographs along a line: both FMUs from start to stop, and the record of it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from functools import cached_property
+
+from tqdm import tqdm
+
+from ..fmu import Fmu, Instance
+from ..interrupt import Interrupted, stop_on_interrupt
+from ..variables import Value, parse, with_unit
+from .calls import PreparedCalls
+from .journey import Journey, LineExtent, parameter_value
+from .record import Record
+from .result import LineResult
+from .schemes import Coupling, GaussSeidel, Implicit, Jacobi
+from .sides import ContactInMaster, ContactInPantograph, Wire
+
+LOOK_EVERY = 50  # steps between two looks at Ctrl-C and the progress bar
+
+
+def run_line(
+    catenary: Fmu,
+    pantograph: Fmu,
+    line: Mapping[str, Value],
+    pantographs: Sequence[Mapping[str, Value]],
+    speed: float,
+    start: float | None = None,
+    stop: float | None = None,
+    step: float = 1e-3,
+    coupling: Coupling = Coupling(),
+    spacing: float = 0.0,
+    start_up: str = "ramp",
+    uplift: float = 0.0,
+    uplift_on: str = "upper_frame",
+    progress: bool = False,
+) -> LineResult:
+    """Run one or two pantographs along a line; see Journey and Coupling.
+
+    line            parameters of the catenary
+    pantographs     parameters of each pantograph, the first one first
+    progress        show a progress bar
+    Raises ZSpringError for settings that do not fit the line, FmuError when an FMU refuses something, and
+    Interrupted after Ctrl-C.
+    """
+    journey = Journey(speed, start, stop, step, spacing, start_up, uplift, uplift_on)
+    with LineRun(catenary, pantograph, line, pantographs, journey, coupling) as run:
+        run.finish(progress)
+        return run.result()
+
+
+class LineRun:
+    """A run that can end early: `result` has the rows so far. A context manager that frees the FMUs.
+
+    Arguments and errors as those of run_line.
+    """
+
+    def __init__(
+        self,
+        catenary: Fmu,
+        pantograph: Fmu,
+        line: Mapping[str, Value],
+        pantographs: Sequence[Mapping[str, Value]],
+        journey: Journey,
+        coupling: Coupling = Coupling(),
+    ):
+        self.catenary, self.pantograph, self.coupling = catenary, pantograph, coupling
+        self._line_given, self._given = line, pantographs
+        self.line = LineExtent.of(catenary, line)
+        self.journey = journey = self.line.complete(journey, len(pantographs))
+        self.steps = math.floor((journey.stop - journey.start) / (journey.speed * journey.step) + 1e-9)
+        self._static_forces = [parameter_value(pantograph, given, "static_force") for given in pantographs]
+        self._done, self._elapsed = 0, 0.0
+        self._stack = ExitStack()
+        try:
+            self._start()
+        except BaseException:
+            self._stack.close()
+            raise
+
+    def _start(self) -> None:
+        """Both FMUs initialised, and the master's parts around them."""
+        journey, coupling, count = self.journey, self.coupling, len(self._given)
+        (wire,) = self._stack.enter_context(self.catenary.instances())
+        heads = self._stack.enter_context(self.pantograph.instances(count))
+        for head, (parameters, inputs) in zip(heads, self.head_starts):
+            head.start(parameters, inputs)
+        wire.start(*self.wire_start)
+        self.settings = _settings(journey, coupling, self.catenary, wire, self.pantograph, heads)
+
+        wire_calls, *head_calls = (self._stack.enter_context(PreparedCalls(i)) for i in (wire, *heads))
+        self._wire = Wire(wire_calls, count)
+        self.lifted = list(self._wire.heights)  # m, at the start by static_force
+        self._uplifts = [calls.reals([f"uplift.{journey.uplift_on}"]) for calls in head_calls]
+        self._scheme = self._make_scheme(head_calls)
+        self._record = Record(self.steps + 1, wire_calls, head_calls, self.line.supports)
+        self._record.take(0, self._shifts(0.0))
+
+    @cached_property
+    def head_starts(self) -> list[tuple[dict[str, Value], dict[str, float]]]:
+        """Parameters and first inputs of each pantograph."""
+        uplift = self.journey.uplift if self.journey.start_up == "direct" else 0.0
+        drive = parse(self.pantograph.variables["drive"], self.coupling.drive)
+        return [
+            (
+                {**parameters, "drive": drive},
+                {"contact_force": force, f"uplift.{self.journey.uplift_on}": uplift},
+            )
+            for parameters, force in zip(self._given, self._static_forces)
+        ]
+
+    @cached_property
+    def wire_start(self) -> tuple[dict[str, Value], dict[str, float]]:
+        """Parameters and first inputs of the catenary."""
+        parameters, inputs = dict(self._line_given), {}
+        for i, force in enumerate(self._static_forces):
+            name = f"pantograph[{i + 1}]"
+            parameters[f"{name}.start"] = self.journey.start - i * self.journey.spacing
+            inputs |= {f"{name}.force": force, f"{name}.speed": self.journey.speed}
+        return parameters, inputs
+
+    def _make_scheme(self, head_calls: Sequence[PreparedCalls]) -> Implicit | GaussSeidel | Jacobi:
+        coupling, forces = self.coupling, self._static_forces
+        if coupling.drive == "Wire":
+            sides = [ContactInPantograph(calls) for calls in head_calls]
+        else:
+            stiffness = [parameter_value(self.pantograph, given, "contact.k") for given in self._given]
+            sides = [ContactInMaster(*each) for each in zip(head_calls, forces, stiffness)]
+        if coupling.scheme == "implicit":
+            tolerance = coupling.tolerance * max(1.0, *forces)
+            return Implicit(self._wire, sides, tolerance, coupling.max_iterations)
+        return {"explicit": GaussSeidel, "jacobi": Jacobi}[coupling.scheme](self._wire, sides)
+
+    def finish(self, progress: bool = False) -> None:
+        """Run to the stop. Raises Interrupted after Ctrl-C."""
+        size, begin = self.journey.step, time.process_time()
+        with stop_on_interrupt() as stop:
+            bar = tqdm(total=self.steps, unit=" steps", disable=None if progress else True)
+            try:
+                for i in range(self._done, self.steps):
+                    end = (i + 1) * size
+                    shifts = self._shifts(end)
+                    self._scheme.advance(i * size, size, shifts)
+                    self._record.take(i + 1, shifts)
+                    self._done = i + 1
+                    if i % LOOK_EVERY == 0:
+                        bar.update(i + 1 - bar.n)
+                        if stop.is_set():
+                            raise Interrupted(f"interrupted at {end:g} s")
+                bar.update(self.steps - bar.n)
+            finally:
+                bar.close()
+                self._elapsed += time.process_time() - begin
+
+    def result(self) -> LineResult:
+        """All rows so far."""
+        rows = slice(self._done + 1)
+        return self._record.result(rows, self.journey.step, self.settings, self._elapsed)
+
+    def _shifts(self, now: float) -> list[float]:
+        """How much lower than the catenary says the pantographs meet the wire, m; sets the ramp's uplift."""
+        if self.journey.start_up == "direct":
+            return self.lifted
+        travelled = now * self.journey.speed / self.line.span
+        if travelled >= 1.0 + self.journey.step * self.journey.speed / self.line.span:
+            return [0.0] * len(self.lifted)
+        rest = 0.5 * (1.0 + math.cos(math.pi * min(travelled, 1.0)))
+        for uplift in self._uplifts:
+            uplift.set((self.journey.uplift * (1.0 - rest),))
+        return [rest * height for height in self.lifted]
+
+    def __enter__(self) -> LineRun:
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._stack.close()
+
+
+def _settings(
+    journey: Journey,
+    coupling: Coupling,
+    catenary: Fmu,
+    wire: Instance,
+    pantograph: Fmu,
+    heads: Sequence[Instance],
+) -> dict[str, str]:
+    """Everything that it takes to repeat the run, in words."""
+    settings = {
+        "speed": f"{journey.speed * 3.6:.6g} km/h",
+        "start": f"{journey.start:g} m",
+        "stop": f"{journey.stop:g} m",
+        "step": f"{journey.step:g} s",
+        "start-up": journey.start_up,
+        "uplift": f"{journey.uplift:g} N on {journey.uplift_on}",
+        "coupling": coupling.scheme,
+        "drive": coupling.drive,
+        "pantographs": str(len(heads)),
+    }
+    if len(heads) > 1:
+        settings["spacing"] = f"{journey.spacing:g} m"
+    if coupling.scheme == "implicit":
+        settings["tolerance"] = f"{coupling.tolerance:g}"
+    named = [("catenary", catenary, wire)]
+    named += [(f"pantograph {i + 1}", pantograph, head) for i, head in enumerate(heads)]
+    for prefix, fmu, instance in named:
+        settings |= {f"{prefix} {key}": value for key, value in fmu.identity.items()}
+        names = fmu.variables.names("parameter", "calculatedParameter")
+        for name, value in zip(names, instance.get(names)):
+            settings[f"{prefix} {name}"] = with_unit(fmu.variables[name], value)
+    return settings

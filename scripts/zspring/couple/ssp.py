@@ -1,0 +1,149 @@
+"""The system of pantographs and catenary as an archive of System Structure and Parameterization 1.0 (SSP)."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+import xml.etree.ElementTree as ET
+import zipfile
+from pathlib import Path
+
+from ..fmu import Fmu
+from ..parameter_sets import write_set
+from .run import LineRun
+
+_SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
+_SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
+_OSP = "http://opensimulationplatform.com/SSP/OSPAnnotations"
+
+CATENARY = "catenary"
+SET_NAME = "initialValues"  # of both sets: Ecos applies one name to all components
+UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}}
+
+
+def element_name(i: int) -> str:
+    """Name of pantograph i, counted from 0, in the system."""
+    return f"pantograph{i + 1}" if i else "pantograph"
+
+
+def write_ssp(run: LineRun, path: Path) -> None:
+    """Write the archive of a run that is set up, with its parameters, first inputs and communication step.
+
+    A system structure says what is connected, not when values are exchanged: tools that do it once a step,
+    side by side, give what start_up "direct" with the scheme "jacobi" gives. The pantographs rest at height 0;
+    the offset in the connection takes off what static_force lifts the wire at the start.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        sources = {}
+        for fmu in run.catenary, run.pantograph:
+            copy = Path(folder, fmu.path.name)
+            _copy_without_enumerations(fmu, copy)
+            sources[fmu] = f"resources/{copy.name}"
+            archive.write(copy, sources[fmu])
+        system = ET.Element(
+            _tag("System"), name="line", description="Pantographs on an overhead contact line"
+        )
+        elements = ET.SubElement(system, _tag("Elements"))
+        starts = {CATENARY: (run.catenary, run.wire_start)}
+        starts |= {element_name(i): (run.pantograph, start) for i, start in enumerate(run.head_starts)}
+        for name, (fmu, (parameters, inputs)) in starts.items():
+            values = Path(folder, f"{name}.ssv")
+            with Fmu(Path(folder, fmu.path.name)) as copy:
+                write_set(values, copy, {**parameters, **inputs}, SET_NAME, f"Parameters and inputs: {name}")
+            archive.write(values, f"resources/{values.name}")
+            component = ET.SubElement(
+                elements,
+                _tag("Component"),
+                {"name": name, "type": "application/x-fmu-sharedlibrary", "source": sources[fmu]},
+                implementation="CoSimulation",
+            )
+            _add_connectors(component, fmu, name, len(run.lifted))
+            bindings = ET.SubElement(component, _tag("ParameterBindings"))
+            ET.SubElement(bindings, _tag("ParameterBinding"), source=f"resources/{values.name}")
+        _add_connections(system, run.lifted)
+        archive.writestr("SystemStructure.ssd", _description(run, system))
+
+
+def _tag(name: str) -> str:
+    return f"{{{_SSD}}}{name}"
+
+
+def _add_connectors(component: ET.Element, fmu: Fmu, name: str, count: int) -> None:
+    if name == CATENARY:
+        names = [f"pantograph[{i + 1}].{kind}" for kind in ("force", "wire_height") for i in range(count)]
+    else:
+        names = ["wire_height", "contact.force"]
+    connectors = ET.SubElement(component, _tag("Connectors"))
+    for connector in names:
+        variable = fmu.variables[connector]
+        element = ET.SubElement(connectors, _tag("Connector"), name=connector, kind=variable.causality)
+        ET.SubElement(element, f"{{{_SSC}}}Real", unit=variable.unit)
+
+
+def _add_connections(system: ET.Element, lifted: list[float]) -> None:
+    connections = ET.SubElement(system, _tag("Connections"))
+    for i, height in enumerate(lifted):
+        name, contact = element_name(i), f"pantograph[{i + 1}]"
+        ends = (name, "contact.force", CATENARY, f"{contact}.force")
+        _connect(connections, *ends)
+        wire = _connect(connections, CATENARY, f"{contact}.wire_height", name, "wire_height")
+        ET.SubElement(wire, f"{{{_SSC}}}LinearTransformation", factor="1", offset=repr(-height))
+
+
+def _connect(connections: ET.Element, source: str, output: str, target: str, name: str) -> ET.Element:
+    return ET.SubElement(
+        connections,
+        _tag("Connection"),
+        startElement=source,
+        startConnector=output,
+        endElement=target,
+        endConnector=name,
+    )
+
+
+def _description(run: LineRun, system: ET.Element) -> bytes:
+    """SystemStructure.ssd, with the communication step as the Open Simulation Platform annotates it."""
+    for prefix, uri in ("ssd", _SSD), ("ssc", _SSC), ("osp", _OSP):
+        ET.register_namespace(prefix, uri)
+    tool = run.catenary.description
+    root = ET.Element(_tag("SystemStructureDescription"), version="1.0", name="pantograph and catenary")
+    root.set("generationTool", f"{tool.generationTool} {tool.version}")
+    root.append(system)
+    units = ET.SubElement(root, _tag("Units"))
+    for unit, base in UNITS.items():
+        element = ET.SubElement(units, f"{{{_SSC}}}Unit", name=unit)
+        ET.SubElement(element, f"{{{_SSC}}}BaseUnit", base)
+    step = run.journey.step
+    experiment = ET.SubElement(
+        root, _tag("DefaultExperiment"), startTime="0.0", stopTime=repr(round(run.steps * step, 12))
+    )
+    annotations = ET.SubElement(experiment, _tag("Annotations"))
+    annotation = ET.SubElement(annotations, f"{{{_SSC}}}Annotation", type="com.opensimulationplatform")
+    algorithm = ET.SubElement(annotation, f"{{{_OSP}}}Algorithm")
+    ET.SubElement(algorithm, f"{{{_OSP}}}FixedStepAlgorithm", baseStepSize=repr(step))
+    ET.indent(root)
+    return ET.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def _copy_without_enumerations(fmu: Fmu, path: Path) -> None:
+    """Copy an FMU with its enumerations declared as Integers of the same values; the libraries stay as they are.
+
+    libcosim and Ecos ignore variables of type Enumeration, so that drive and suspension could not be set.
+    FMI 2.0 sets both types with fmi2SetInteger.
+    """
+    counts = {
+        v.declaredType.name: len(v.declaredType.items) for v in fmu.variables if v.type == "Enumeration"
+    }
+
+    def integer(found: re.Match) -> str:
+        return f'<Integer min="1" max="{counts[found[1]]}" start="{found[2]}"/>'
+
+    with zipfile.ZipFile(fmu.path) as old, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as new:
+        for entry in old.infolist():
+            content = old.read(entry)
+            if entry.filename == "modelDescription.xml":
+                text = content.decode()
+                text = re.sub(r'<Enumeration declaredType="(\w+)" start="(\d+)"\s*/>', integer, text)
+                content = text.encode()
+            new.writestr(entry, content)
