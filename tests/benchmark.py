@@ -1,4 +1,6 @@
-"""What the solver costs and how exact it is, over the standard figure. Run it with scripts/benchmark.
+"""What the solvers cost and how exact they are. Run it with scripts/benchmark.
+
+The pantograph over the standard figure; the catenary, alone and coupled, on its reference line.
 
 Every point is run from rest through one communication step of 30 periods, a fixed amount of work, unlike
 `zspring frf`, which stops where the response is steady. Times are minima over a few rounds in which the variants
@@ -8,6 +10,7 @@ take turns, so that a busy machine hurts all of them alike; their ratios say mor
 from __future__ import annotations
 
 import subprocess
+import time
 from collections.abc import Iterable
 from itertools import groupby
 
@@ -15,7 +18,9 @@ import click
 import numpy as np
 from core import probe_folder
 from tqdm import tqdm
-from zspring.fmu import Fmu, Instance
+from zspring.couple.run import run_line
+from zspring.couple.schemes import Coupling
+from zspring.fmu import CATENARY, Fmu, Instance, installed_fmu
 from zspring.frf.fixed_work import PERIODS, figure_points, run_points
 from zspring.frf.measure import FrfSettings
 
@@ -82,14 +87,40 @@ def accuracy(instance: Instance, reference_step: float) -> None:
                   f"{f'{frequency:g} Hz, {amplitude:g} m/s2':<20}  {np.abs(np.angle(H / exact)).max():>8.4f}")
 
 
+def line(pantograph: Fmu) -> None:
+    speed = 250 / 3.6  # m/s
+    with Fmu(installed_fmu(CATENARY)) as catenary:
+        print(f"\nLine: steps of 1 ms at 250 km/h, one core, best of {ROUNDS}")
+        print("spans        through fmpy, us a step   a span")
+        lengths = (5, 10, 20, 40)
+        times = {spans: [step_of_the_line(catenary, spans, speed) for _ in range(ROUNDS)] for spans in lengths}
+        for spans, taken in times.items():
+            print(f"{spans:<11}  {1e6 * min(taken):>24.1f}   {1e6 * min(taken) / spans:>6.2f}")
+        print("coupling     times faster than real time")
+        for scheme in ("explicit", "implicit"):
+            runs = [run_line(catenary, pantograph, {}, [{}], speed, coupling=Coupling(scheme)) for _ in range(ROUNDS)]
+            print(f"{scheme:<11}  {runs[0].time[-1] / min(run.elapsed for run in runs):>27.1f}")
+
+
+def step_of_the_line(catenary: Fmu, spans: int, speed: float, steps: int = 1000) -> float:
+    """Seconds a step of 1 ms takes, for a line of that many spans under a moving force."""
+    with catenary.instances() as (instance,):
+        instance.start({"line.spans": spans}, {"pantograph[1].force": 120, "pantograph[1].speed": speed})
+        begin = time.perf_counter()
+        for i in range(steps):
+            instance.step(i * 1e-3, 1e-3)
+        return (time.perf_counter() - begin) / steps
+
+
 @click.command()
 @click.option("--reference-step", default=5e-5, show_default=True, help="s, of the solution taken as exact.")
 def main(reference_step: float) -> None:
-    """Print speed, Newton's work and accuracy over the standard figure."""
+    """Print speed, Newton's work and accuracy over the standard figure, and the speed of the line."""
     with Fmu() as fmu, fmu.instances() as (instance,):
         speed(instance)
         newton(instance)
         accuracy(instance, reference_step)
+        line(fmu)
 
 
 if __name__ == "__main__":
