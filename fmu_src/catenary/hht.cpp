@@ -36,6 +36,8 @@ StepFactors::StepFactors(const Line& line, double step)
 
 Hht::Hht(const Line& line)
     : line_(line),
+      wires_(line.matrices.wires),
+      mass_(line.matrices.mass),
       mass_factor_(line.matrices.mass),
       slackening_(line.shape.stiffness),
       x_(line.mesh.dofs()),
@@ -87,7 +89,7 @@ LineState Hht::at_rest(const Loads& loads) {
       throw std::runtime_error("no equilibrium of the line under the initial contact forces was found");
     add_slack(response, 1, s.slack, s.u);
   }
-  x_.noalias() = line_.matrices.wires * s.u;
+  wires_.multiply(s.u, x_);
   line_.add_springs(s.u, x_);
   s.elastic = 0.5 * (s.u.dot(x_) - s.slack.cwiseAbs2().dot(line_.shape.stiffness));
   return s;
@@ -126,9 +128,9 @@ void Hht::predict(const StepFactors& f, const Loads& l1, LineState& s) {
   s.u += f.h * s.v + f.old_position * s.a;
   s.v += f.old_velocity * s.a;
   y_ = s.u + p.damping_stiffness * s.v;
-  x_.noalias() = line_.matrices.wires * y_;
+  wires_.multiply(y_, x_);
   line_.add_springs(s.u, x_);
-  mv_.noalias() = line_.matrices.mass * s.v;
+  mass_.multiply(s.v, mv_);
   x_ += p.damping_mass * mv_;
   s.a = p.hht_alpha * s.internal - weight(line_) * x_;
   l1.add_to(s.a, weight(line_));
@@ -141,7 +143,7 @@ void Hht::correct(const StepFactors& f, LineState& s) {
   add_slack(f.droppers, w, s.slack, s.a);
   s.u += f.beta_h2 * s.a;
   s.v += f.gamma_h * s.a;
-  ma_.noalias() = line_.matrices.mass * s.a;
+  mass_.multiply(s.a, ma_);
   s.internal = (line_.p.hht_alpha / w) * s.internal - (1 / w) * ma_;
 }
 
@@ -168,7 +170,7 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
   mv_ += f.gamma_h * ma_;
   s.kinetic = 0.5 * s.v.dot(mv_);
   s.dissipated += 0.25 * f.h * old_v_.dot(s.damping);
-  x_.noalias() = line_.matrices.wires * s.v;
+  wires_.multiply(s.v, x_);
   s.damping = p.damping_stiffness * x_ + p.damping_mass * mv_;
   s.dissipated += 0.25 * f.h * (2 * old_v_.dot(s.damping) + s.v.dot(s.damping));
   s.work += 0.5 * (l0.dot(s.u) + l1.dot(s.u) - work_before);

@@ -9,6 +9,7 @@
 
 #include "droppers.hpp"
 #include "line.hpp"
+#include "wire_operator.hpp"
 
 namespace zspring::catenary {
 
@@ -52,6 +53,7 @@ class Hht {
   void trial_forces(const VectorXd& u, const VectorXd& a, double beta_h2);
 
   const Line& line_;
+  const WireOperator wires_, mass_;
   BlockCholesky mass_factor_;
   Slackening slackening_;
   std::unique_ptr<StepFactors> factors_[4];   // the last used first
