@@ -13,7 +13,7 @@ from zspring.couple.result import LineResult
 from zspring.couple.run import LineRun, run_line
 from zspring.couple.schemes import Coupling
 from zspring.errors import ZSpringError
-from zspring.fmu import Fmu, installed_fmu
+from zspring.fmu import CATENARY, Fmu, installed_fmu
 from zspring.parameter_sets import find_set, read_set
 from zspring.variables import parse
 
@@ -31,7 +31,7 @@ EXPLICIT, JACOBI = Coupling("explicit"), Coupling("jacobi")
 @pytest.fixture(scope="module")
 def fmus() -> Iterator[tuple[Fmu, Fmu]]:
     """Catenary and pantograph."""
-    with Fmu(installed_fmu("Catenary")) as catenary, Fmu() as pantograph:
+    with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
         yield catenary, pantograph
 
 
@@ -134,8 +134,8 @@ def test_the_force_is_that_of_the_contact_law_with_the_wire_at_the_same_time(alo
     result = along([{"static_force": 30.0, "suspension": 2}], speed=350 / 3.6, coupling=coupling)
     force = result.contact_force
     law = np.maximum(0.0, 30.0 + 50e3 * (result.head_height - result.wire_height))
-    assert 10 < np.sum(force == 0) < 0.9 * force.size
-    assert np.all(force >= 0)
+    assert 10 < np.sum(np.abs(force) < 1e-12) < 0.9 * force.size
+    assert np.all(force >= -1e-12)  # a force that falls to 0 along a slope ends there to rounding
     if coupling.scheme == "implicit":
         assert force == pytest.approx(law, abs=2 * 1e-6 * 30.0)
     else:
@@ -207,6 +207,17 @@ def test_a_tighter_line_rises_less(along, two_masses):
     assert np.max(tight.wire_height) < 0.7 * np.max(loose.wire_height)
 
 
+@pytest.mark.parametrize("pantograph", [{}, {"friction": 2}, {"suspension": 2, "static_force": 40.0}])
+@pytest.mark.parametrize("drive", ["Wire", "Force"])
+def test_two_steps_of_the_catenary_do_for_an_implicit_step(fmus, pantograph, drive):
+    """Friction, loss of contact and slack droppers seldom take a third one."""
+    journey = Journey(300 / 3.6, **EXTENT)
+    with LineRun(*fmus, SHORT, [pantograph], journey, Coupling("implicit", drive)) as run:
+        run.finish()
+        assert run.wire_steps < 2.02
+        assert run.result().slack_droppers.max() > 0
+
+
 def test_mean_force_laws():
     """0.00097 v^2 + 70, 110 and 140 N: at 300 km/h 87.3 N more than at a stand."""
     assert mean_force("AC", 300) == pytest.approx(157.3)
@@ -263,3 +274,8 @@ def test_what_does_not_fit_the_line_is_refused(along, two_masses, settings, mess
 def test_couplings_that_do_not_exist_are_refused(arguments, message):
     with pytest.raises(ZSpringError, match=message):
         Coupling(*arguments)
+
+
+def test_a_damper_in_a_contact_that_the_master_solves_is_refused(along):
+    with pytest.raises(ZSpringError, match="contact.c = 50 N.s/m: must be 0 with drive Force"):
+        along([{"contact.c": 50.0}], coupling=Coupling("implicit", "Force"))

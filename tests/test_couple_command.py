@@ -18,7 +18,7 @@ from zspring.couple.run import LineRun
 from zspring.couple.schemes import Coupling
 from zspring.couple.tasks import run_and_write
 from zspring.errors import ZSpringError
-from zspring.fmu import Fmu, installed_fmu
+from zspring.fmu import CATENARY, Fmu, installed_fmu
 from zspring.interrupt import Interrupted
 
 SHORT = ["--set-line", "line.spans=4", "--stop", "150", "--step", "0.002"]
@@ -66,7 +66,7 @@ def test_a_run_writes_series_with_units_and_a_figure(zspring, tmp_path):
 def made() -> LineRun:
     """A run of two pantographs that ended early."""
     journey = Journey(60.0, 70.0, 100.0, 2e-3, 30.0)
-    with Fmu(installed_fmu("Catenary")) as catenary, Fmu() as pantograph:
+    with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
         with LineRun(
             catenary, pantograph, {"line.spans": 3}, [{"zspring.Mf": 0.25}, {"zspring.Mf": 0.4}], journey
         ) as run:
@@ -97,7 +97,7 @@ def test_a_file_of_something_else_is_refused(tmp_path):
 
 
 def test_ctrl_c_keeps_the_rows_so_far():
-    with Fmu(installed_fmu("Catenary")) as catenary, Fmu() as pantograph:
+    with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
         fine = {"solver.step": 1e-4}
         with LineRun(catenary, pantograph, fine, [fine], Journey(50.0, step=1e-4)) as run:
             threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
@@ -109,7 +109,7 @@ def test_ctrl_c_keeps_the_rows_so_far():
 
 
 def test_a_run_that_cannot_go_on_keeps_its_rows_in_the_file(tmp_path):
-    with Fmu(installed_fmu("Catenary")) as catenary, Fmu() as pantograph:
+    with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
         settings = (catenary, pantograph, {}, [{}], Journey(70.0), Coupling(max_iterations=1))
         with pytest.raises(ZSpringError, match=r"converge.*; the rows so far are kept in .*line\.csv"):
             run_and_write(*settings, tmp_path, "png", parquet=False)

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from ..errors import ZSpringError
-from ..fmu import installed_fmu
+from ..fmu import CATENARY, installed_fmu
 from ..options import chosen_parameters, format_option, opened, output_option, parameters_option, set_option
 from ..parameter_sets import LINES
 from .journey import MASSES, START_UPS, Journey, parameter_value
@@ -78,8 +78,8 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
     type=click.Choice(START_UPS),
     default="ramp",
     show_default=True,
-    help="ramp: pantographs rest at the wire's unloaded height and the wire comes to them over the first "
-    "span. direct: the wire is lower all along by what the static force lifts it at the start.",
+    help="What static_force lifts the wire at the start is taken off the height that the pantographs see, and "
+    "comes back over the first span (ramp) or never (direct).",
 )
 @click.option(
     "--coupling",
@@ -156,7 +156,7 @@ def couple(
         scheme, drive, start_up = "jacobi", "Wire", "direct"
     coupling = Coupling(scheme, drive, **({} if tolerance is None else {"tolerance": tolerance}))
 
-    with opened(line_fmu or installed_fmu("Catenary")) as catenary, opened(fmu_path) as pantograph:
+    with opened(line_fmu or installed_fmu(CATENARY)) as catenary, opened(fmu_path) as pantograph:
         line = chosen_parameters(catenary, line_set, line_assignments, SET_HERE, LINES)
         if tension:
             line |= dict(zip(("contact_wire.tension", "messenger.tension"), tension))

@@ -26,10 +26,10 @@ class Journey:
     stop        where the first pantograph ends, m; None: half a span before the line's end
     step        communication step, s
     spacing     from the first pantograph back to the second, m
-    start_up    "ramp": the wire comes to the pantographs, which rest at its unloaded height, as it is under
-                static_force, and goes on to its true height in a half cosine over the first span; so do the
-                uplift forces. "direct": it stays lower by what static_force lifts it at the start, and the
-                uplift forces act at once.
+    start_up    "ramp": the run begins at rest, with the wire as static_force lifts it at the start. This lift is
+                taken off the height that the pantographs see and comes back as a half cosine over the first
+                span, as the uplift forces do; from then on static_force is the force at height 0.
+                "direct": the lift stays off for the whole run, and the uplift forces act at once.
     uplift      extra upward force on each pantograph, N
     uplift_on   the mass it acts on: "head", "upper_frame" or "lower_frame"
     """

@@ -10,6 +10,7 @@ from functools import cached_property
 
 from tqdm import tqdm
 
+from ..errors import ZSpringError
 from ..fmu import Fmu, Instance
 from ..interrupt import Interrupted, stop_on_interrupt
 from ..variables import Value, parse, with_unit
@@ -128,6 +129,9 @@ class LineRun:
         if coupling.drive == "Wire":
             sides = [ContactInPantograph(calls) for calls in head_calls]
         else:
+            for given in self._given:
+                if damping := parameter_value(self.pantograph, given, "contact.c"):
+                    raise ZSpringError(f"contact.c = {damping:g} N.s/m: must be 0 with drive Force; use drive Wire")
             stiffness = [parameter_value(self.pantograph, given, "contact.k") for given in self._given]
             sides = [ContactInMaster(*each) for each in zip(head_calls, forces, stiffness)]
         if coupling.scheme == "implicit":
@@ -155,6 +159,11 @@ class LineRun:
             finally:
                 bar.close()
                 self._elapsed += time.process_time() - begin
+
+    @property
+    def wire_steps(self) -> float:
+        """Steps of the catenary for one communication step, so far."""
+        return self._wire.steps / max(1, self._done)
 
     def result(self) -> LineResult:
         """All rows so far."""

@@ -105,7 +105,6 @@ class Implicit:
         self._tolerance, self._max_iterations = tolerance, max_iterations
         self.forces = [pantograph.force for pantograph in pantographs]
         self._before = self.forces
-        self.wire_steps = 0
 
     def advance(self, time: float, size: float, shifts: Sequence[float]) -> None:
         """As Jacobi.advance. Raises ZSpringError if forces and heights do not agree within the tolerance."""
@@ -118,14 +117,13 @@ class Implicit:
             if iteration:
                 wire.restore()
             wire.step(time, size, forces)
-            self.wire_steps += 1
             heights = [height - shift for height, shift in zip(wire.heights, shifts)]
             errors = self._errors(time, size, heights, forces, again=iteration > 0)
             if max(map(abs, errors)) <= self._tolerance:
                 break
             found = self._on_linear_wire(time, size, heights, forces, errors)
             share = 1.0 if iteration < UNDAMPED else 0.5
-            forces = [old + share * (new - old) for old, new in zip(forces, found)]
+            forces = [max(0.0, old + share * (new - old)) for old, new in zip(forces, found)]
         else:
             raise ZSpringError(
                 f"the contact force does not converge at {time + size:g} s: after {iteration + 1} iterations "

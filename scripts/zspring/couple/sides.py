@@ -16,6 +16,7 @@ class Wire:
 
         self.save, self.restore, self._step = calls.save, calls.restore, calls.step
         self._count = count
+        self.steps = 0  # made, those that were taken back included
         self._forces = calls.reals(names("force"))
         self._motion = calls.reals(names("wire_height") + names("wire_velocity"))
         self._compliance = Jacobian(calls, names("wire_height"), names("force"))
@@ -30,6 +31,7 @@ class Wire:
         """One step at whose end the contact forces, N, are these."""
         self._forces.set(forces)
         self._step(time, size)
+        self.steps += 1
         self.look()
 
     def compliance(self) -> list[Sequence[float]]:

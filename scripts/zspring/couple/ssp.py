@@ -16,7 +16,7 @@ _SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
 _SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
 _OSP = "http://opensimulationplatform.com/SSP/OSPAnnotations"
 
-CATENARY = "catenary"
+LINE_ELEMENT = "catenary"
 SET_NAME = "initialValues"  # of both sets: Ecos applies one name to all components
 UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}}
 
@@ -45,7 +45,7 @@ def write_ssp(run: LineRun, path: Path) -> None:
             _tag("System"), name="line", description="Pantographs on an overhead contact line"
         )
         elements = ET.SubElement(system, _tag("Elements"))
-        starts = {CATENARY: (run.catenary, run.wire_start)}
+        starts = {LINE_ELEMENT: (run.catenary, run.wire_start)}
         starts |= {element_name(i): (run.pantograph, start) for i, start in enumerate(run.head_starts)}
         for name, (fmu, (parameters, inputs)) in starts.items():
             values = Path(folder, f"{name}.ssv")
@@ -70,7 +70,7 @@ def _tag(name: str) -> str:
 
 
 def _add_connectors(component: ET.Element, fmu: Fmu, name: str, count: int) -> None:
-    if name == CATENARY:
+    if name == LINE_ELEMENT:
         names = [f"pantograph[{i + 1}].{kind}" for kind in ("force", "wire_height") for i in range(count)]
     else:
         names = ["wire_height", "contact.force"]
@@ -85,9 +85,9 @@ def _add_connections(system: ET.Element, lifted: list[float]) -> None:
     connections = ET.SubElement(system, _tag("Connections"))
     for i, height in enumerate(lifted):
         name, contact = element_name(i), f"pantograph[{i + 1}]"
-        ends = (name, "contact.force", CATENARY, f"{contact}.force")
+        ends = (name, "contact.force", LINE_ELEMENT, f"{contact}.force")
         _connect(connections, *ends)
-        wire = _connect(connections, CATENARY, f"{contact}.wire_height", name, "wire_height")
+        wire = _connect(connections, LINE_ELEMENT, f"{contact}.wire_height", name, "wire_height")
         ET.SubElement(wire, f"{{{_SSC}}}LinearTransformation", factor="1", offset=repr(-height))
 
 

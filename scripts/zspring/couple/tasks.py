@@ -50,21 +50,22 @@ def run_and_write(
         except (Interrupted, ZSpringError) as error:
             write_result(run.result(), path)
             raise type(error)(f"{error}; the rows so far are kept in {path}") from None
-        result, lined = run.result(), run.line
+        result, extent, wire_steps = run.result(), run.line, run.wire_steps
     written = [path, *([folder / "line.parquet"] if parquet else []), folder / f"line.{suffix}"]
     for file in written[:-1]:
         write_result(result, file)
     try:
         filtered = low_pass(result.contact_force, journey.step)
-        print(*summary(result, lined), sep="\n")
+        print(*summary(result, extent), sep="\n")
     except ZSpringError as error:
         filtered = None
         print(f"no statistics: {error}")
     save(line_figure(result, filtered, _title(result, pantograph, pantographs)), written[-1])
     duration = result.time[-1]
     print(
-        f"{len(result.time) - 1} communication steps, {duration:.3g} s of line in {result.elapsed:.2f} s, "
-        f"{duration / result.elapsed:.1f} times faster than real time"
+        f"{len(result.time) - 1} communication steps, each of {wire_steps:.2f} steps of the catenary\n"
+        f"{duration:.3g} s of line in {result.elapsed:.2f} s, {duration / result.elapsed:.1f} times faster than "
+        "real time"
     )
     print("written:", *written)
 
