@@ -80,7 +80,10 @@ int Slackening::solve(const VectorXd& trial, const MatrixXd& compliance, VectorX
     };
     for (Eigen::Index i = 0; i < n; ++i)
       if (is_wrong(i)) ++wrong, last_wrong = i;
-    if (wrong == 0) return solved + 1;
+    if (wrong == 0) {
+      s = s.cwiseMax(0.0);  // what rounding left
+      return solved + 1;
+    }
     if (wrong < fewest)
       fewest = wrong, patience = 10;
     else

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace zspring::catenary {
 namespace {
@@ -86,7 +85,7 @@ LineState Hht::at_rest(const Loads& loads) {
   if (trial_.size() > 0 && trial_.minCoeff() < 0) {
     const DropperResponse response(line_.mesh, static_factor(), 1);
     if (slackening_.solve(trial_, response.compliance(), s.slack) < 0)
-      throw std::runtime_error("no equilibrium of the line under the initial contact forces was found");
+      throw ParameterError("no equilibrium of the line under the initial contact forces was found");
     add_slack(response, 1, s.slack, s.u);
   }
   wires_.multiply(s.u, x_);

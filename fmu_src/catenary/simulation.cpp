@@ -32,8 +32,9 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : lin
   }
   state_ = hht_.at_rest(loads_at(line_.mesh, placed.passage));
   std::copy_n(placed.passage, pantographs, state_.passage);
-  before_ = state_;
+  before_ = next_ = state_;
   held_ = inputs;
+  if (!all_finite(outputs())) throw ParameterError(overflow);
 }
 
 bool Simulation::stays_on_line(const CommunicationStep& step, AdvanceFailure& failure) const {
@@ -53,28 +54,46 @@ bool Simulation::stays_on_line(const CommunicationStep& step, AdvanceFailure& fa
 }
 
 bool Simulation::advance(const Parameters&, const Inputs& inputs, double length, AdvanceFailure& failure) {
+  if (too_long(length, line_.p.step, failure)) return false;
   if (!stays_on_line({line_, state_.passage, inputs, length}, failure)) return false;
-  std::swap(state_, before_);  // so that copying finds memory of the right size
-  state_ = before_;
-  const CommunicationStep step(line_, before_.passage, inputs, length);
+  const CommunicationStep step(line_, state_.passage, inputs, length);
   const double n = step.internal_steps();
   const StepFactors& factors = hht_.factors(length / n);
+  next_ = state_;
   Loads l0 = step.loads(0);
-  hht_.jump(loads_at(line_.mesh, before_.passage), l0, state_);
+  hht_.jump(loads_at(line_.mesh, state_.passage), l0, next_);
   for (double k = 1; k <= n; ++k) {
     const Loads l1 = step.loads(k / n * length);
-    if (!hht_.step(factors, l0, l1, state_)) {
-      std::swap(state_, before_);
+    if (!hht_.step(factors, l0, l1, next_)) {
       failure.time = k / n * length;
       std::snprintf(failure.text, sizeof failure.text, "no set of slack droppers fits, or the values overflow");
       return false;
     }
     l0 = l1;
   }
-  for (int i = 0; i < pantographs; ++i) state_.passage[i] = step.at(i, length);
+  for (int i = 0; i < pantographs; ++i) next_.passage[i] = step.at(i, length);
+  std::swap(state_, next_);
+  if (!all_finite(outputs())) {
+    std::swap(state_, next_);
+    failure.time = length;
+    std::snprintf(failure.text, sizeof failure.text, overflow);
+    return false;
+  }
+  std::swap(before_, next_);
   held_ = inputs;
   length_ = length;
   return true;
+}
+
+bool Simulation::is_possible() const {
+  for (const LineState* s : {&state_, &before_}) {
+    const Statistics& n = s->statistics;
+    if (!(n.steps >= 0 && n.iterations >= 0 && n.iterations_max >= 0 && s->h >= 0 &&
+          (s->slack.array() >= 0).all()))
+      return false;
+  }
+  AdvanceFailure unused;
+  return length_ >= 0 && !too_long(length_, line_.p.step, unused);
 }
 
 Outputs Simulation::outputs() const {

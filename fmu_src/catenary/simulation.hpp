@@ -38,6 +38,8 @@ class Simulation {
     visit(held_, f);
     f(length_);
   }
+  // Whether these could be a simulation's: some of them are counts.
+  bool is_possible() const;
 
  private:
   bool stays_on_line(const CommunicationStep& step, AdvanceFailure& failure) const;
@@ -48,6 +50,7 @@ class Simulation {
   Line line_;
   Hht hht_;
   LineState state_, before_;  // before_: at the begin of the last communication step
+  LineState next_;            // workspace
   Inputs held_;               // in the last communication step
   double length_ = 0;         // s, of that; 0 before the first
   LineFacts facts_;

@@ -25,9 +25,15 @@ std::string described(const Variable& v, double x) {
 
 void check_value(const Variable& v, double x) {
   if (!std::isfinite(x)) refuse("%s: must be a finite number", described(v, x).c_str());
+  if (v.type != Type::Real && x != std::round(x)) refuse("%s: must be a whole number", described(v, x).c_str());
   if (*v.allowed && (x < v.min || x > v.max)) refuse("%s: must be one of %s", described(v, x).c_str(), v.allowed);
   if (x < v.min) refuse("%s: must be at least %.10g", described(v, x).c_str(), v.min);
   if (x > v.max) refuse("%s: must be at most %.10g", described(v, x).c_str(), v.max);
+}
+
+double finite(const Variable& v, double derivative) {
+  if (!std::isfinite(derivative)) refuse("%s: the derivative overflows", v.name);
+  return derivative;
 }
 
 bool same_type(Type a, Type b) {
@@ -150,7 +156,7 @@ double Instance::output_derivative(unsigned reference, int order) {
   const Variable& v = variable(reference, Type::Real);
   if (!v.binding.output) refuse("%s: is no output and has no output derivatives", v.name);
   if (order != 1) refuse("%s: derivative of order %d; must be 1", v.name, order);
-  return v.get(simulation().output_rates());
+  return finite(v, v.get(simulation().output_rates()));
 }
 
 void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown,
@@ -171,7 +177,7 @@ void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t
   const Outputs y = simulation().outputs_change(change);
   for (size_t i = 0; i < n_unknown; ++i) {
     const Variable& v = variables[unknown[i]];
-    result[i] = v.binding.output ? v.get(y) : 0;
+    result[i] = v.binding.output ? finite(v, v.get(y)) : 0;
   }
 }
 
@@ -215,6 +221,7 @@ void Instance::visit_values(Visitor&& f) {
     if (!v.is_parameter()) continue;
     double x = v.get(parameters_);
     f(x);
+    check_value(v, x);
     v.set(parameters_, x);
   }
   visit(inputs_, f);
@@ -222,6 +229,12 @@ void Instance::visit_values(Visitor&& f) {
 }
 
 namespace {
+
+Phase phase_of(double number) {
+  for (Phase p : {Instantiated, Initialization, StepComplete, StepFailed, Terminated, Error})
+    if (number == p) return p;
+  refuse("FMU state: %g is no state of an FMU", number);
+}
 
 struct Writer {
   std::vector<double>& out;
@@ -264,10 +277,8 @@ void Instance::restore(const std::vector<double>& numbers) {
   Reader read{numbers.data(), numbers.data() + numbers.size()};
   double stored_phase;
   read(stored_phase);
-  phase = static_cast<Phase>(stored_phase);
+  phase = phase_of(stored_phase);
   visit_values(read);
-  for (const Variable& v : variables)
-    if (v.is_parameter()) check_value(v, v.get(parameters_));
   bool has_simulation;
   read(has_simulation);
   outputs_.reset();
@@ -282,8 +293,12 @@ void Instance::check_state(const std::vector<double>& numbers) {
     if (!std::isfinite(x)) throw Refusal("FMU state: holds a value that is not finite");
   Instance trial({}, "", false);
   trial.restore(numbers);
-  const unsigned p = trial.phase;
-  if (p == 0 || p > Error || (p & (p - 1)) != 0) refuse("FMU state: %u is no state of an FMU", p);
+  if (!trial.simulation_) {
+    if (trial.phase & (StepComplete | StepFailed | Terminated)) throw Refusal("FMU state: lacks its simulation");
+    return;
+  }
+  if (!trial.simulation_->is_possible())
+    throw Refusal("FMU state: holds numbers that no simulation leaves behind");
 }
 
 }  // namespace zspring::fmi

@@ -9,6 +9,10 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double fewest_steps_per_period = 16;
 
+double steps_in_period(double frequency, double largest_step) {
+  return std::max(fewest_steps_per_period, std::ceil(1 / (frequency * largest_step) - 1e-9));
+}
+
 }  // namespace
 
 Ramp Ramp::to(double target, double value, double slope, double curvature, double length) {
@@ -38,6 +42,18 @@ double Ramp::integral(double s) const {
   const double ramp =
       length * x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3 + x * (c[3] / 4 + x * (c[4] / 5 + x * c[5] / 6)))));
   return ramp + (s > length ? (s - length) * value(length) : 0);
+}
+
+bool BenchState::is_possible(double largest_step) const {
+  if (frequency == 0) return true;
+  const double step = 1 / (frequency * steps_per_period);
+  return frequency > 0 && steps_per_period == steps_in_period(frequency, largest_step) &&
+         ramp_steps >= steps_per_period && node >= 0 && node == std::floor(node) && offset >= 0 && offset < step &&
+         std::abs(carry) < step && periods >= 0;
+}
+
+double Bench::grid_step(double frequency, double largest_step) {
+  return 1 / (frequency * steps_in_period(frequency, largest_step));
 }
 
 double Bench::grid_step() const { return 1 / (b_.frequency * b_.steps_per_period); }
@@ -82,7 +98,7 @@ void Bench::tune(double frequency, double acceleration, double largest_step) {
   b_.frequency = frequency;
   b_.acceleration = acceleration;
   b_.phase = phase;
-  b_.steps_per_period = std::max(fewest_steps_per_period, std::ceil(1 / (frequency * largest_step) - 1e-9));
+  b_.steps_per_period = steps_in_period(frequency, largest_step);
   const double slower = std::max(1.0, frequency / std::max(f, 1e-3 * frequency));
   // Whole periods: a host that steps by periods then stays on the grid.
   b_.ramp_steps = b_.steps_per_period * std::round(slower);

@@ -41,6 +41,8 @@ struct BenchState {
   double periods = 0;
   double H_re = 0, H_im = 0;  // m/N
   double change = 1;
+
+  bool is_possible(double largest_step) const;
 };
 
 template <class Visitor>
@@ -68,6 +70,8 @@ class Bench {
 
   // Start a new programme if frequency (Hz) or acceleration (m/s2) differ from the running one.
   void tune(double frequency, double acceleration, double largest_step);
+  // s, of the grid at this frequency
+  static double grid_step(double frequency, double largest_step);
   double grid_step() const;                      // s
   double to_next_node() const;                   // s
   Phasor motion(double tau, Boundary& b) const;  // tau s from now

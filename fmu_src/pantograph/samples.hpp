@@ -27,6 +27,8 @@ struct Samples {
     value[0] = x;
     count = kept + 1;
   }
+
+  bool is_possible() const { return count >= 0 && count <= most && count == static_cast<int>(count); }
 };
 
 template <class Visitor>

@@ -29,6 +29,7 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
   state_.motion.position = state_.mechanical.boundary.position;
   before_ = state_;
   held_.inputs = inputs;
+  if (!all_finite(outputs())) throw ParameterError(overflow);
 }
 
 Boundary Simulation::initial_boundary(const Inputs& u) const {
@@ -165,25 +166,47 @@ bool Simulation::run_inputs(SimulationState& state, const Held& held, OnStep& on
   return true;
 }
 
+double Simulation::largest_step(const Held& held) const {
+  const Parameters& p = mechanics_.parameters;
+  return p.drive == Drive::Bench ? Bench::grid_step(held.bench_frequency, p.solver.step) : p.solver.step;
+}
+
 bool Simulation::advance(const Parameters& tuned, const Inputs& inputs, double length, AdvanceFailure& failure) {
   const Held held{inputs, tuned.bench_frequency, tuned.bench_acceleration, length};
+  if (too_long(length, largest_step(held), failure)) return false;
   const SimulationState begin = state_;
   const auto nothing = [](const MechanicalState&, const MechanicalState&, const Boundary&, const Boundary&,
                           double) {};
   Unsolved unsolved;
-  if (!run(state_, held, nothing, unsolved)) {
+  const bool solved = run(state_, held, nothing, unsolved);
+  if (!solved || !all_finite(outputs())) {
     state_ = begin;
     const StepFailure& f = unsolved.step;
     failure.time = unsolved.time;
-    std::snprintf(failure.text, sizeof failure.text,
-                  "no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
-                  "iterations: %d",
-                  dof_name[f.dof], f.residual, f.dof == ALPHA || f.dof == BETA ? "N.m" : "N", f.iterations);
+    if (solved)
+      std::snprintf(failure.text, sizeof failure.text, overflow);
+    else
+      std::snprintf(failure.text, sizeof failure.text,
+                    "no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
+                    "iterations: %d",
+                    dof_name[f.dof], f.residual, f.dof == ALPHA || f.dof == BETA ? "N.m" : "N", f.iterations);
     return false;
   }
   before_ = begin;
   held_ = held;
   return true;
+}
+
+bool Simulation::is_possible() const {
+  for (const SimulationState* s : {&state_, &before_}) {
+    const Statistics& n = s->mechanical.statistics;
+    if (!(n.iterations >= 0 && n.iterations_max >= 0 && n.steps >= 0 && n.refinements >= 0 &&
+          s->mechanical.h >= 0 && s->motion.positions.is_possible() && s->motion.curvatures.is_possible() &&
+          s->bench.is_possible(mechanics_.parameters.solver.step)))
+      return false;
+  }
+  AdvanceFailure unused;
+  return held_.length == 0 || (held_.length > 0 && !too_long(held_.length, largest_step(held_), unused));
 }
 
 void Simulation::describe_run(char* text, int size) const {

@@ -56,6 +56,8 @@ class Simulation {
   // Numbers in fixed order, each given to f as a double or a fixed-size vector of them.
   template <class Visitor>
   void visit_state(Visitor&& f);
+  // Whether these could be a simulation's: some of them are counts.
+  bool is_possible() const;
 
  private:
   MechanicalState at_rest(const Inputs& inputs) const;
@@ -71,6 +73,7 @@ class Simulation {
   template <class BoundaryAt, class OnStep>
   bool cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1, double begin,
              double h, int halvings, OnStep& on_step, Unsolved& unsolved) const;
+  double largest_step(const Held& held) const;  // s
   void meet(const Boundary& b0, MechanicalState& s) const;
   void meet_variation(const Boundary& db0, MechanicalState& d) const;
 
