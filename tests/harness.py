@@ -1,4 +1,4 @@
-"""The built FMU as a host sees it: variables by name, one communication step at a time, its log.
+"""A built FMU as a host sees it: variables by name, one communication step at a time, its log.
 
 Everything goes through fmpy's FMI 2.0 binding, which raises FMICallException with the status on Discard and
 Error.
@@ -65,7 +65,7 @@ class Fmu:
     def names(self, causality: str) -> list[str]:
         return [v.name for v in self.description.modelVariables if v.causality == causality]
 
-    def slave(self, name: str = "pantograph") -> FMU2Slave:
+    def slave(self, name: str = "instance") -> FMU2Slave:
         """A binding that has loaded the library but has no instance yet."""
         return FMU2Slave(
             guid=self.description.guid,
@@ -76,7 +76,10 @@ class Fmu:
 
 
 def callbacks_into(log: list[Message], *, expand: bool = True) -> fmi2CallbackFunctions:
-    """FMI callbacks that append to `log`; `expand`: expand printf directives first, as hosts do."""
+    """FMI callbacks that append to `log`; `expand`: expand printf directives first, as hosts do.
+
+    fmpy expands for the callbacks made last only: with several instances, look at the log of the last one.
+    """
 
     def logger(_environment, instance, status, category, text):
         log.append(
@@ -92,12 +95,11 @@ def callbacks_into(log: list[Message], *, expand: bool = True) -> fmi2CallbackFu
     return functions
 
 
-class Pantograph:
-    """One instance of the FMU.
+class Instance:
+    """One instance of an FMU.
 
-    `parameters` (by name; enumerations by item name) are set before initialization; contact_force follows
-    static_force unless given. With `initialize` False the instance stays instantiated. `time` is the
-    communication point reached.
+    `parameters` (by name; enumerations by item name) are set before initialization. With `initialize` False the
+    instance stays instantiated. `time` is the communication point reached.
     """
 
     def __init__(
@@ -108,7 +110,7 @@ class Pantograph:
         initialize: bool = True,
         start_time: float = 0.0,
         stop_time: float | None = None,
-        name: str = "pantograph",
+        name: str = "instance",
         logging: bool = True,
         categories: Sequence[str] = (),
     ):
@@ -119,10 +121,7 @@ class Pantograph:
         if categories:
             self.slave.setDebugLogging(True, categories)
         self.time = start_time
-        parameters = dict(parameters or {})
-        if "static_force" in parameters:
-            parameters.setdefault("contact_force", parameters["static_force"])
-        self.set(parameters)
+        self.set(parameters or {})
         if initialize:
             self.initialize(start_time, stop_time)
 
@@ -218,6 +217,16 @@ class Pantograph:
             result[n] = self.slave.getReal(references)
         self.time = begin + count * step
         return result
+
+
+class Pantograph(Instance):
+    """One of the pantograph: contact_force follows static_force unless given."""
+
+    def __init__(self, fmu: Fmu, parameters: Mapping[str, Value] | None = None, **options):
+        parameters = dict(parameters or {})
+        if "static_force" in parameters:
+            parameters.setdefault("contact_force", parameters["static_force"])
+        super().__init__(fmu, parameters, **options)
 
 
 class Signal:

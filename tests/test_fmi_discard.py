@@ -5,77 +5,86 @@ from __future__ import annotations
 import pytest
 from fmpy.fmi2 import fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated
 
-from harness import Pantograph, refusal
+from harness import Instance, refusal
+from models import MODELS, Model
 
-# One iteration of a slope that does not follow the friction law, to a tolerance at the limit of rounding.
-HOPELESS = {
-    "solver.tangent": "Exact",
-    "solver.max_iterations": 1,
-    "solver.tolerance": 1e-13,
-    "drive": "Force",
-}
+PANTOGRAPH, CATENARY = MODELS
 
 
-def discarded(pantograph) -> tuple[Pantograph, dict, int]:
+def discarded(instance, model: Model) -> tuple[Instance, dict, int]:
     """An instance whose last step of 0.1 s was discarded, its values before that, and the status."""
-    p = pantograph(HOPELESS)
+    parameters, force = model.discarded
+    p = instance(parameters)
     p.step(0.002)
     values = p.all_values()
-    p["contact_force"] = 300.0
+    p[model.force] = force
     p.log.clear()
-    return p, values | {"contact_force": 300.0}, refusal(p.slave.doStep, p.time, 0.1)
+    return p, values | {model.force: force}, refusal(p.slave.doStep, p.time, 0.1)
 
 
-def test_an_unsolvable_step_is_discarded_and_leaves_the_state_as_it_was(pantograph):
-    p, before, status = discarded(pantograph)
+def test_an_unsolvable_step_is_discarded_and_leaves_the_state_as_it_was(model, instance):
+    p, before, status = discarded(instance, model)
     assert status == fmi2Discard
     assert p.all_values() == before
 
 
-def test_the_last_successful_time_is_that_before_the_step(pantograph):
-    p, _, _ = discarded(pantograph)
+def test_the_last_successful_time_is_that_before_the_step(model, instance):
+    p, _, _ = discarded(instance, model)
     assert p.slave.getRealStatus(fmi2LastSuccessfulTime) == 0.002
     assert p.slave.getBooleanStatus(fmi2Terminated) is False
 
 
-def test_the_reason_is_logged(pantograph):
-    """Time, degree of freedom, residual, iterations."""
-    p, _, _ = discarded(pantograph)
+def test_the_reason_is_logged_once(model, instance):
+    p, _, _ = discarded(instance, model)
     lines = [m for m in p.log if m.category == "logStatusDiscard"]
     assert len(lines) == 1 and lines[0].status == fmi2Discard
-    assert "0.00" in lines[0].text and "iteration" in lines[0].text and "unbalanced" in lines[0].text
-    assert any(name in lines[0].text for name in ("head", "alpha", "beta", "upper frame", "lower frame"))
+    assert "t = 0.0" in lines[0].text and "The state is that of 0.002 s" in lines[0].text
 
 
-def test_a_discarded_step_can_be_left_by_restoring_a_state_by_reset_or_by_terminate(pantograph):
-    p, _, _ = discarded(pantograph)
+def test_newtons_method_tells_where_it_failed(pantograph):
+    """Degree of freedom, residual, iterations."""
+    p, _, _ = discarded(pantograph, PANTOGRAPH)
+    text = p.log[-1].text
+    assert "iteration" in text and "unbalanced" in text
+    assert any(name in text for name in ("head", "alpha", "beta", "upper frame", "lower frame"))
+
+
+def test_a_line_that_is_left_is_told_with_its_end(catenary):
+    p, _, _ = discarded(catenary, CATENARY)
+    assert "pantograph[1].x = 60." in p.log[-1].text and "0 to 60 m" in p.log[-1].text
+
+
+def test_a_discarded_step_can_be_left_by_restoring_a_state_by_reset_or_by_terminate(model, instance):
+    parameters, force = model.discarded
+    p, _, _ = discarded(instance, model)
     p.reset()
     p.initialize()
     p.step(0.01)
-    q = pantograph(HOPELESS)
+    q = instance(parameters)
     q.step(0.002)
     state, values = q.slave.getFMUstate(), q.all_values()
-    q["contact_force"] = 300.0
+    q[model.force] = force
     assert refusal(q.slave.doStep, 0.002, 0.1) == fmi2Discard
     q.slave.setFMUstate(state)
     assert q.all_values() == values
     q.slave.freeFMUstate(state)
-    r, _, _ = discarded(pantograph)
+    r, _, _ = discarded(instance, model)
     r.slave.terminate()
 
 
-def test_a_discarded_step_leaves_no_trace_in_what_follows(pantograph):
-    """Undone, with the static force again, it goes on bit for bit like an instance that never tried."""
-    p, untouched = pantograph(HOPELESS), pantograph(HOPELESS)
-    for instance in (p, untouched):
-        instance.step(0.002)
+def test_a_discarded_step_leaves_no_trace_in_what_follows(model, instance):
+    """Undone, with the force as it was, it goes on bit for bit like an instance that never tried."""
+    parameters, force = model.discarded
+    p, untouched = instance(parameters), instance(parameters)
+    for q in (p, untouched):
+        q.step(0.002)
     state = p.slave.getFMUstate()
-    p["contact_force"] = 300.0
+    p[model.force] = force
     assert refusal(p.slave.doStep, 0.002, 0.1) == fmi2Discard
     p.slave.setFMUstate(state)
     p.slave.freeFMUstate(state)
-    for instance in (p, untouched):
-        instance.step(0.1)
+    for q in (p, untouched):
+        q.step(0.01)
     assert p.all_values() == untouched.all_values()
 
 

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import sys
-from ctypes import byref
+from ctypes import byref, c_char_p, create_string_buffer
 from pathlib import Path
 
 import pytest
-from fmpy.fmi2 import fmi2CoSimulation, fmi2Error, fmi2ModelExchange
+from fmpy.fmi2 import (
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    fmi2CoSimulation,
+    fmi2Error,
+    fmi2ModelExchange,
+)
 
-from harness import Fmu, Message, Pantograph, callbacks_into, refusal
+from harness import Fmu, Instance, Message, callbacks_into, refusal
 
 
 def instantiate(
@@ -21,33 +29,34 @@ def instantiate(
     guid: str | None = None,
     location: bytes | None = b"",
     logging: bool = True,
+    expand: bool = True,
 ):
     """Binding, its component (None if refused) and the callbacks, which must outlive it."""
-    slave, callbacks = fmu.slave(), callbacks_into(log)
+    slave, callbacks = fmu.slave(), callbacks_into(log, expand=expand)
     guid = fmu.description.guid if guid is None else guid
     component = slave.fmi2Instantiate(name, kind, guid.encode(), location, byref(callbacks), 0, logging)
     return slave, component, callbacks
 
 
-def test_a_wrong_guid_gives_no_instance_and_says_why(fmu):
+def test_a_wrong_guid_gives_no_instance_and_says_why(any_fmu):
     log: list[Message] = []
-    _, component, _ = instantiate(fmu, log, guid="{00000000-0000-0000-0000-000000000000}")
+    _, component, _ = instantiate(any_fmu, log, guid="{00000000-0000-0000-0000-000000000000}")
     assert component is None
-    assert "00000000-0000" in log[-1].text and fmu.description.guid in log[-1].text
+    assert "00000000-0000" in log[-1].text and any_fmu.description.guid in log[-1].text
 
 
 @pytest.mark.parametrize(
     "options, named", [({"kind": fmi2ModelExchange}, "co-simulation"), ({"name": b""}, "name")]
 )
-def test_what_cannot_be_instantiated_is_refused_with_a_reason(fmu, options, named):
+def test_what_cannot_be_instantiated_is_refused_with_a_reason(any_fmu, options, named):
     log: list[Message] = []
-    _, component, _ = instantiate(fmu, log, **options)
+    _, component, _ = instantiate(any_fmu, log, **options)
     assert component is None
     assert named in log[-1].text.lower()
 
 
-def test_every_form_of_resource_location_is_accepted(fmu):
-    resources = Path(fmu.folder, "resources")
+def test_every_form_of_resource_location_is_accepted(any_fmu):
+    resources = Path(any_fmu.folder, "resources")
     uri = resources.as_uri()
     for location in (
         None,
@@ -59,9 +68,11 @@ def test_every_form_of_resource_location_is_accepted(fmu):
         uri.replace("file:///", "file://localhost/"),
         uri.replace("%20", " "),
         str(resources),
+        resources.as_uri().replace("file:///", "file:///C:/"),
+        "file:///no/such/folder%",
     ):
         log: list[Message] = []
-        slave, component, _ = instantiate(fmu, log, location=None if location is None else location.encode())
+        slave, component, _ = instantiate(any_fmu, log, location=None if location is None else location.encode())
         assert component is not None and not log, location
         slave.fmi2FreeInstance(component)
 
@@ -69,84 +80,121 @@ def test_every_form_of_resource_location_is_accepted(fmu):
 @pytest.mark.parametrize(
     "name", ["%s%n%d", "100 %", "p" * 5000, "Stromabnehmer \N{GREEK SMALL LETTER ALPHA}"]
 )
-def test_instance_names_do_no_harm_in_the_log(pantograph, name):
-    p = pantograph(name=name, logging=True)
-    refusal(p.__setitem__, "m1", -1.0)
-    assert "m1" in p.log[-1].text and p.log[-1].instance == name
+def test_instance_names_do_no_harm_in_the_log(model, instance, name):
+    p = instance(name=name, logging=True)
+    refusal(p.__setitem__, model.bounded[0], -1.0)
+    assert model.bounded[0] in p.log[-1].text and p.log[-1].instance == name
 
 
-def test_messages_are_plain_text_for_hosts_that_do_not_expand_directives(fmu):
+def test_messages_are_plain_text_for_hosts_that_do_not_expand_directives(model, any_fmu):
     """The text itself is the message, not a format such as "%s" with arguments."""
     log: list[Message] = []
-    slave, callbacks = fmu.slave(), callbacks_into(log, expand=False)
+    slave, callbacks = any_fmu.slave(), callbacks_into(log, expand=False)
     slave.component = slave.fmi2Instantiate(
-        b"p", fmi2CoSimulation, fmu.description.guid.encode(), b"", byref(callbacks), 0, 1
+        b"p", fmi2CoSimulation, any_fmu.description.guid.encode(), b"", byref(callbacks), 0, 1
     )
-    assert refusal(slave.setReal, [fmu.variables["m1"].valueReference], [-1.0]) == fmi2Error
+    name = model.bounded[0]
+    assert refusal(slave.setReal, [any_fmu.variables[name].valueReference], [-1.0]) == fmi2Error
     slave.freeInstance()
-    assert "m1" in log[-1].text and "-1" in log[-1].text
+    assert name in log[-1].text and "-1" in log[-1].text
 
 
-def test_only_declared_categories_are_logged(fmu, pantograph):
-    declared = {category.name for category in fmu.description.logCategories}
-    p = pantograph({"drive": "Displacement", "solver.tangent": "Exact", "solver.max_iterations": 3})
-    for n in range(20):
-        p["head_displacement"] = 0.002 * (n % 5)
-        if refusal(p.step, 0.002):
-            break
-    refusal(p.__setitem__, "m1", -1.0)
-    assert len({m.category for m in p.log}) > 1
-    assert {m.category for m in p.log} <= declared
+@pytest.mark.parametrize("text", ["100 % done", "%s%s%s%n", "#r1# and #"])
+def test_directives_and_references_in_what_the_host_gave_reach_the_log_as_text(any_fmu, text):
+    """Hosts expand a message as a printf format, and #r1# as a variable: both signs are doubled."""
+    for expand in (True, False):
+        log: list[Message] = []
+        _, component, _ = instantiate(any_fmu, log, guid=text, expand=expand)
+        assert component is None
+        doubled = text.replace("#", "##")
+        assert (doubled if expand else doubled.replace("%", "%%")) in log[-1].text
 
 
-def warn(p: Pantograph) -> None:
-    """Make an instance warn: an input that the static state does not balance."""
-    p.reset()
-    p["uplift.head"] = 3.0
-    p.initialize()
-    p.step(0.01)
+def test_categories_are_declared_and_named_in_every_message(model, any_fmu, instance):
+    """Hosts crash on a NULL category, and refuse undeclared ones."""
+    declared = {category.name for category in any_fmu.description.logCategories}
+    p = instance(model.discarded[0])
+    p.step(0.002)
+    p[model.force] = model.discarded[1]
+    assert refusal(p.slave.doStep, p.time, 0.1)
+    refusal(p.__setitem__, model.bounded[0], -1.0)
+    p.slave.terminate()
+    assert {"logStatusDiscard", "logStatusError", "logSolver"} <= {m.category for m in p.log} <= declared
 
 
 @pytest.mark.parametrize(
     "enabled, logged",
     [
-        (["logStatusWarning"], True),
+        (["logSolver"], True),
         (["logAll"], True),
-        (["logSolver"], False),
+        (["logStatusWarning"], False),
         (["logStatusError", "logStatusDiscard"], False),
     ],
 )
-def test_only_enabled_categories_are_logged(pantograph, enabled, logged):
-    p = pantograph(categories=enabled)
-    warn(p)
+def test_only_enabled_categories_are_logged(instance, enabled, logged):
+    """The end of a run is a message of logSolver."""
+    p = instance(categories=enabled)
+    p.step(0.01)
+    p.slave.terminate()
     assert bool(p.log) == logged
 
 
-def test_logging_can_be_switched_off_and_on_for_all_categories(pantograph):
-    p = pantograph(logging=False)
-    warn(p)
+def test_logging_can_be_switched_off_and_on_for_all_categories(instance):
+    p = instance(logging=False)
+
+    def run() -> None:
+        p.reset()
+        p.initialize()
+        p.step(0.01)
+        p.slave.terminate()
+
+    run()
     assert p.log == []
     p.slave.fmi2SetDebugLogging(p.slave.component, 1, 0, None)
-    warn(p)
+    run()
     assert len(p.log) == 1
     p.slave.fmi2SetDebugLogging(p.slave.component, 0, 0, None)
-    warn(p)
+    run()
     assert len(p.log) == 1
 
 
-def test_why_a_call_was_refused_is_logged_without_debug_logging_too(pantograph):
-    p = pantograph(logging=False)
-    refusal(p.__setitem__, "m1", -1.0)
+def test_why_a_call_was_refused_is_logged_without_debug_logging_too(model, instance):
+    p = instance(logging=False)
+    refusal(p.__setitem__, model.bounded[0], -1.0)
     assert len(p.log) == 1
 
 
-def test_an_unknown_log_category_is_refused_by_name(pantograph):
-    p = pantograph()
+def test_an_unknown_log_category_is_refused_by_name(instance):
+    p = instance()
     assert refusal(p.slave.setDebugLogging, True, ["logEverything"]) == fmi2Error
     assert "logEverything" in p.log[-1].text
 
 
-def initializing(pantograph, parameters: dict) -> Pantograph:
+def test_a_null_log_category_is_refused(instance):
+    p = instance()
+    names = (c_char_p * 2)(b"logAll", None)
+    assert refusal(p.slave.fmi2SetDebugLogging, p.slave.component, 1, 2, names) == fmi2Error
+    assert refusal(p.slave.fmi2SetDebugLogging, p.slave.component, 1, 1, None) == fmi2Error
+    assert len(p.log) == 2
+
+
+def test_the_callbacks_are_copied_and_only_the_logger_is_used(any_fmu):
+    """The others may be NULL, and so may the logger; name and callbacks may be overwritten after the call."""
+    log: list[Message] = []
+    kept, guid = callbacks_into(log), any_fmu.description.guid.encode()
+    given, name = fmi2CallbackFunctions.from_buffer_copy(kept), create_string_buffer(b"p")
+    given.allocateMemory, given.freeMemory = fmi2CallbackAllocateMemoryTYPE(), fmi2CallbackFreeMemoryTYPE()
+    first, silent = any_fmu.slave(), any_fmu.slave()
+    first.component = first.fmi2Instantiate(name, fmi2CoSimulation, guid, b"", byref(given), 0, 1)
+    given.logger, name.value = fmi2CallbackLoggerTYPE(), b"q"
+    silent.component = silent.fmi2Instantiate(b"q", fmi2CoSimulation, guid, b"", byref(given), 0, 1)
+    for slave in (first, silent):
+        assert refusal(slave.doStep, 0.0, 0.1) == fmi2Error
+        slave.freeInstance()
+    assert [message.instance for message in log] == ["p"]
+
+
+def initializing(pantograph, parameters: dict) -> Instance:
     p = pantograph(parameters, initialize=False)
     p.slave.setupExperiment()
     p.slave.enterInitializationMode()
@@ -223,16 +271,20 @@ def resident_kilobytes() -> int:
     return peak // 1024 if sys.platform == "darwin" else peak
 
 
-def test_thousands_of_resets_instances_and_states_do_not_grow_memory(fmu):
-    """An instance takes more than a kilobyte, so one leaked in each cycle would show as several megabytes."""
+def test_thousands_of_resets_instances_and_states_do_not_grow_memory(model, any_fmu):
+    """An instance takes more than a kilobyte, so one leaked in each cycle would show as megabytes."""
     log: list[Message] = []
-    slave, callbacks = fmu.slave(), callbacks_into(log)
-    guid = fmu.description.guid.encode()
+    slave, callbacks = any_fmu.slave(), callbacks_into(log)
+    guid = any_fmu.description.guid.encode()
+
+    references = [any_fmu.variables[name].valueReference for name in model.smallest]
+    values = list(model.smallest.values())
 
     def cycles(count: int) -> None:
         for _ in range(count):
             slave.component = slave.fmi2Instantiate(b"p", fmi2CoSimulation, guid, b"", byref(callbacks), 0, 0)
             for _ in range(2):
+                slave.setInteger(references, values)
                 slave.enterInitializationMode()
                 slave.exitInitializationMode()
                 slave.doStep(0.0, 0.004)
@@ -244,7 +296,7 @@ def test_thousands_of_resets_instances_and_states_do_not_grow_memory(fmu):
                 slave.reset()
             slave.fmi2FreeInstance(slave.component)
 
-    cycles(500)
+    cycles(300)
     before = resident_kilobytes()
-    cycles(4000)
+    cycles(2000)
     assert resident_kilobytes() - before < 1000

@@ -7,10 +7,11 @@ import math
 import pytest
 from fmpy.fmi2 import fmi2Error
 
-from harness import Fmu, Pantograph, refusal
+from harness import Fmu, Instance, refusal
+from models import each_case
 
 
-def refused(p: Pantograph, call, *arguments) -> str:
+def refused(p: Instance, call, *arguments) -> str:
     """The single log line with which a call is refused."""
     p.log.clear()
     assert refusal(call, *arguments) == fmi2Error
@@ -30,12 +31,12 @@ def bad_values(fmu: Fmu, name: str) -> list[float | int]:
     return [int(v.min) - 1, int(v.max) + 1]
 
 
-def test_every_bad_value_of_every_parameter_and_input_is_refused_by_name(fmu, pantograph):
-    p = pantograph(initialize=False)
-    for name in fmu.names("parameter") + fmu.names("input"):
-        for value in bad_values(fmu, name):
+def test_every_bad_value_of_every_parameter_and_input_is_refused_by_name(any_fmu, instance):
+    p = instance(initialize=False)
+    for name in any_fmu.names("parameter") + any_fmu.names("input"):
+        for value in bad_values(any_fmu, name):
             p.reset()
-            text, v = refused(p, p.__setitem__, name, value), fmu.variables[name]
+            text, v = refused(p, p.__setitem__, name, value), any_fmu.variables[name]
             said, _, allowed = text.partition(f"{name} = ")[2].partition(":")
             assert float(said.split()[0]) == pytest.approx(value, nan_ok=True), text
             if v.type == "Real":
@@ -47,75 +48,83 @@ def test_every_bad_value_of_every_parameter_and_input_is_refused_by_name(fmu, pa
             p.reset()
             p.slave.setupExperiment()
             p.slave.enterInitializationMode()
-            assert p[name] == fmu.start(name), name
+            assert p[name] == any_fmu.start(name), name
 
 
-def test_a_refused_value_leaves_the_others_of_the_same_call_alone_too(pantograph):
-    p = pantograph(initialize=False)
+def test_a_refused_value_leaves_the_others_of_the_same_call_alone_too(model, instance):
+    p = instance(initialize=False)
     p.slave.setupExperiment()
     p.slave.enterInitializationMode()
-    m1, m2 = p["m1"], p["m2"]
-    text = refused(p, p.slave.setReal, [p.reference("m1"), p.reference("m2")], [9.0, -1.0])
-    assert "m2" in text
-    assert (p["m1"], p["m2"]) == (m1, m2)
+    good, bad = model.bounded
+    before = p[good], p[bad]
+    text = refused(p, p.slave.setReal, [p.reference(good), p.reference(bad)], [1.1 * before[0], -1.0])
+    assert bad in text and good not in text
+    assert (p[good], p[bad]) == before
 
 
-def test_bad_values_are_refused_while_stepping(pantograph):
-    for name, value in (("contact_force", math.nan), ("bench.frequency", -1.0), ("wire_height", math.inf)):
-        p = pantograph()
-        p.step(0.01)
-        before = p[name]
-        assert name in refused(p, p.__setitem__, name, value)
-        assert p[name] == before
+def test_bad_values_are_refused_while_stepping(any_fmu, instance):
+    for name in any_fmu.names("input"):
+        for value in (math.nan, math.inf):
+            p = instance()
+            p.step(0.01)
+            before = p[name]
+            assert name in refused(p, p.__setitem__, name, value)
+            assert p[name] == before
 
 
-def test_unknown_value_references_are_refused(fmu, pantograph):
-    unknown = 1 + max(v.valueReference for v in fmu.variables.values())
+def test_a_tunable_parameter_keeps_its_bounds_while_stepping(pantograph):
+    p = pantograph()
+    p.step(0.01)
+    assert "bench.frequency" in refused(p, p.__setitem__, "bench.frequency", -1.0)
+    assert p["bench.frequency"] == 5.0
+
+
+def test_unknown_value_references_are_refused(any_fmu, instance):
+    unknown = 1 + max(v.valueReference for v in any_fmu.variables.values())
     for call in ("getReal", "getInteger", "getBoolean"):
         for reference in (unknown, 2**32 - 1):
-            p = pantograph()
+            p = instance()
             assert str(reference) in refused(p, getattr(p.slave, call), [reference])
     for call, value in (("setReal", 1.0), ("setInteger", 1), ("setBoolean", 1)):
-        p = pantograph(initialize=False)
+        p = instance(initialize=False)
         assert str(unknown) in refused(p, getattr(p.slave, call), [unknown], [value])
 
 
-@pytest.mark.parametrize(
-    "call, name",
-    [
-        ("getReal", "drive"),
-        ("getReal", "contact.closed"),
-        ("getReal", "solver.steps"),
-        ("getInteger", "m1"),
-        ("getInteger", "contact.closed"),
-        ("getBoolean", "m1"),
-        ("getBoolean", "drive"),
-    ],
-)
-def test_reading_a_variable_with_the_wrong_type_is_refused(pantograph, call, name):
-    p = pantograph()
-    assert name in refused(p, getattr(p.slave, call), [p.reference(name)])
+CALLS = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
 
 
-@pytest.mark.parametrize(
-    "call, name, value",
-    [
-        ("setReal", "drive", 1.0),
-        ("setReal", "solver.max_iterations", 5.0),
-        ("setInteger", "m1", 5),
-        ("setBoolean", "drive", 1),
-    ],
-)
-def test_setting_a_variable_with_the_wrong_type_is_refused(pantograph, call, name, value):
-    p = pantograph(initialize=False)
-    assert name in refused(p, getattr(p.slave, call), [p.reference(name)], [value])
+def test_reading_a_variable_with_the_wrong_type_is_refused(any_fmu, instance):
+    """Every variable, with each call of another type; enumerations count as Integers."""
+    p = instance()
+    for v in any_fmu.variables.values():
+        for kind in {"Real", "Integer", "Boolean"} - {CALLS[v.type]}:
+            assert v.name in refused(p, getattr(p.slave, f"get{kind}"), [v.valueReference])
 
 
-def test_there_are_no_strings(pantograph):
-    p = pantograph(initialize=False)
-    assert "String" in refused(p, p.slave.setString, [p.reference("m1")], ["5"])
-    p = pantograph()
-    assert "String" in refused(p, p.slave.getString, [p.reference("m1")])
+def test_setting_a_variable_with_the_wrong_type_is_refused(any_fmu, instance):
+    p = instance(initialize=False)
+    for name in any_fmu.names("parameter") + any_fmu.names("input"):
+        for kind in {"Real", "Integer", "Boolean"} - {CALLS[any_fmu.variables[name].type]}:
+            value = 1.0 if kind == "Real" else 1
+            assert name in refused(p, getattr(p.slave, f"set{kind}"), [p.reference(name)], [value])
+
+
+def test_there_are_no_strings(model, instance):
+    p = instance(initialize=False)
+    reference = p.reference(model.bounded[0])
+    assert "String" in refused(p, p.slave.setString, [reference], ["5"])
+    p = instance()
+    assert "String" in refused(p, p.slave.getString, [reference])
+
+
+def test_calls_without_variables_are_allowed(instance):
+    """Hosts loop over types and call with none."""
+    p = instance()
+    for call in (p.slave.getReal, p.slave.getInteger, p.slave.getBoolean, p.slave.getString):
+        assert list(call([])) == []
+    for call in (p.slave.setReal, p.slave.setInteger, p.slave.setBoolean, p.slave.setString):
+        call([], [])
+    assert p.log == []
 
 
 @pytest.mark.parametrize(
@@ -130,22 +139,22 @@ def test_there_are_no_strings(pantograph):
         (-0.01, 0.01, "currentCommunicationPoint = -0.01 s"),
     ],
 )
-def test_impossible_communication_steps_are_refused(pantograph, time, size, named):
-    p = pantograph()
+def test_impossible_communication_steps_are_refused(instance, time, size, named):
+    p = instance()
     before = p.all_values()
     text = refused(p, p.slave.doStep, time, size)
     assert named in text
     assert p.all_values() == before
 
 
-def test_steps_past_the_stop_time_are_refused(pantograph):
-    p = pantograph(stop_time=0.1)
+def test_steps_past_the_stop_time_are_refused(instance):
+    p = instance(stop_time=0.1)
     p.step(0.1)
     assert "0.1" in refused(p, p.step, 0.01)
 
 
-def test_rounding_at_the_stop_time_is_tolerated(pantograph):
-    p = pantograph(stop_time=1.0)
+def test_rounding_at_the_stop_time_is_tolerated(instance):
+    p = instance(stop_time=1.0)
     for n in range(10):
         p.step(0.1 if n < 9 else 1.0 - p.time + 1e-15)
 
@@ -153,8 +162,8 @@ def test_rounding_at_the_stop_time_is_tolerated(pantograph):
 @pytest.mark.parametrize(
     "start, stop", [(0.0, -1.0), (1.0, 0.5), (math.nan, 1.0), (0.0, math.nan), (math.inf, None)]
 )
-def test_impossible_experiments_are_refused(pantograph, start, stop):
-    p = pantograph(initialize=False)
+def test_impossible_experiments_are_refused(instance, start, stop):
+    p = instance(initialize=False)
     assert "time" in refused(p, lambda: p.slave.setupExperiment(startTime=start, stopTime=stop)).lower()
 
 
@@ -168,36 +177,44 @@ def test_a_slope_of_the_friction_law_needs_a_smooth_law(pantograph, tangent):
 
 
 @pytest.mark.parametrize("order", [0, 3, -1])
-def test_input_derivatives_of_other_orders_are_refused(pantograph, order):
-    p = pantograph()
-    text = refused(p, p.slave.setRealInputDerivatives, [p.reference("contact_force")], [order], [1.0])
-    assert "contact_force" in text and str(order) in text
+def test_input_derivatives_of_other_orders_are_refused(model, instance, order):
+    p = instance()
+    text = refused(p, p.slave.setRealInputDerivatives, [p.reference(model.force)], [order], [1.0])
+    assert model.force in text and str(order) in text
 
 
-@pytest.mark.parametrize(
-    "name, value", [("head.z", 1.0), ("m1", 1.0), ("contact_force", math.nan), ("wire_height", math.inf)]
-)
-def test_derivatives_of_what_is_no_input_and_numbers_that_are_none_are_refused(pantograph, name, value):
-    p = pantograph()
-    assert name in refused(p, p.slave.setRealInputDerivatives, [p.reference(name)], [1], [value])
+def test_derivatives_of_what_is_no_input_and_numbers_that_are_none_are_refused(model, instance):
+    for name, value in (
+        (model.moved, 1.0),
+        (model.bounded[0], 1.0),
+        (model.choice, 1.0),
+        (model.force, math.nan),
+        (model.force, math.inf),
+    ):
+        p = instance()
+        assert name in refused(p, p.slave.setRealInputDerivatives, [p.reference(name)], [1], [value])
 
 
-@pytest.mark.parametrize("name, order", [("head.z", 2), ("head.z", 0), ("m1", 1), ("solver.steps", 1)])
-def test_output_derivatives_that_do_not_exist_are_refused(pantograph, name, order):
-    p = pantograph()
-    p.step(0.01)
-    assert name in refused(p, p.slave.getRealOutputDerivatives, [p.reference(name)], [order])
+def test_output_derivatives_that_do_not_exist_are_refused(model, instance):
+    for name, order in ((model.moved, 2), (model.moved, 0), (model.bounded[0], 1), ("solver.steps", 1)):
+        p = instance()
+        p.step(0.01)
+        assert name in refused(p, p.slave.getRealOutputDerivatives, [p.reference(name)], [order])
 
 
-@pytest.mark.parametrize(
-    "unknown, known",
-    [("head.z", "m1"), ("m1", "contact_force"), ("head.z", "head.v"), ("solver.steps", "contact_force")],
-)
-def test_directional_derivatives_of_or_by_other_variables_are_refused(pantograph, unknown, known):
-    p = pantograph()
-    p.step(0.01)
-    text = refused(p, p.slave.getDirectionalDerivative, [p.reference(unknown)], [p.reference(known)], [1.0])
-    assert unknown in text or known in text
+def test_directional_derivatives_of_or_by_other_variables_are_refused(model, instance):
+    for unknown, known in (
+        (model.moved, model.bounded[0]),
+        (model.bounded[0], model.force),
+        (model.moved, "energy.work"),
+        ("solver.steps", model.force),
+    ):
+        p = instance()
+        p.step(0.01)
+        text = refused(
+            p, p.slave.getDirectionalDerivative, [p.reference(unknown)], [p.reference(known)], [1.0]
+        )
+        assert unknown in text or known in text
 
 
 def test_an_input_that_does_not_fit_the_static_state_is_reported_once_and_accepted(pantograph):
@@ -210,8 +227,8 @@ def test_an_input_that_does_not_fit_the_static_state_is_reported_once_and_accept
     assert "contact_force" in lines[0].text and "120" in lines[0].text and "150" in lines[0].text
 
 
-def test_a_consistent_start_is_silent(pantograph):
-    for drive in ("Force", "Displacement", "Wire", "Bench"):
-        p = pantograph({"drive": drive})
-        p.step(0.01)
-        assert p.log == []
+@each_case
+def test_a_consistent_start_is_silent(instance, case):
+    p = instance(case.parameters)
+    p.step(0.01)
+    assert p.log == []

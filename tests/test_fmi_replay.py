@@ -6,70 +6,59 @@ from concurrent.futures import ThreadPoolExecutor
 from ctypes import byref, c_void_p, create_string_buffer
 
 import numpy as np
-import pytest
 from fmpy.fmi2 import fmi2Error
 
-from harness import Pantograph, Signal, refusal
+from harness import Instance, refusal
+from models import MODELS, Case, Model, each_case
 
-CASES = {
-    "Force": ({"drive": "Force"}, {"contact_force": Signal.cubed_sines([60.0], [1.3], 120.0)}),
-    "Displacement": (
-        {"drive": "Displacement", "friction": "Coulomb"},
-        {"head_displacement": Signal.cubed_sines([0.02], [1.3])},
-    ),
-    "Wire": ({"drive": "Wire", "contact.c": 50.0}, {"wire_height": Signal([(0.012, 25.0, 0.0)])}),
-    "Bench": ({"drive": "Bench", "bench.acceleration": 3.0}, {}),
-}
 STEP, COUNT = 0.0037, 150
 
 
-def drive_on(p: Pantograph, inputs: dict[str, Signal]) -> list[dict]:
+def drive_on(p: Instance, case: Case) -> list[dict]:
     """Steps with input derivatives; every variable after some of them."""
     history = []
     for _ in range(3):
-        p.run(STEP, COUNT // 3, ["head.z"], signals=inputs)
+        p.run(STEP, COUNT // 3, [], signals=case.inputs)
         history.append(p.all_values())
     return history
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_a_restored_state_replays_bit_for_bit(pantograph, case):
-    parameters, inputs = CASES[case]
-    p = pantograph(parameters)
-    drive_on(p, inputs)
+@each_case
+def test_a_restored_state_replays_bit_for_bit(instance, case):
+    p = instance(case.parameters)
+    drive_on(p, case)
     state, time, values = p.slave.getFMUstate(), p.time, p.all_values()
-    first = drive_on(p, inputs)
+    first = drive_on(p, case)
     p.slave.setFMUstate(state)
     p.time = time
     assert p.all_values() == values
-    assert drive_on(p, inputs) == first
+    assert drive_on(p, case) == first
     p.slave.freeFMUstate(state)
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_a_serialised_state_continues_in_another_instance_bit_for_bit(pantograph, case):
-    parameters, inputs = CASES[case]
-    p, other = pantograph(parameters), pantograph()
-    drive_on(p, inputs)
+@each_case
+def test_a_serialised_state_continues_in_another_instance_bit_for_bit(instance, case):
+    p, other = instance(case.parameters), instance()
+    drive_on(p, case)
     state = p.slave.getFMUstate()
     data, other.time = p.slave.serializeFMUstate(state), p.time
     copy = other.slave.deSerializeFMUstate(data)
     other.slave.setFMUstate(copy)
     assert other.all_values() == p.all_values()
-    assert drive_on(other, inputs) == drive_on(p, inputs)
+    assert drive_on(other, case) == drive_on(p, case)
     p.slave.freeFMUstate(state)
     other.slave.freeFMUstate(copy)
 
 
-def test_input_values_and_their_derivatives_belong_to_the_state(pantograph):
-    p = pantograph()
-    p["contact_force"] = 130.0
-    p.set_derivatives("contact_force", 7.0, -3.0)
+def test_input_values_and_their_derivatives_belong_to_the_state(model, instance):
+    p = instance()
+    p[model.force] = 130.0
+    p.set_derivatives(model.force, 7.0, -3.0)
     state = p.slave.getFMUstate()
     p.step(0.1)
     expected = p.all_values()
-    p["contact_force"] = 50.0
-    p.set_derivatives("contact_force", 0.0, 0.0)
+    p[model.force] = 50.0
+    p.set_derivatives(model.force, 0.0, 0.0)
     p.step(0.1)
     p.slave.setFMUstate(state)
     p.slave.doStep(0.0, 0.1)
@@ -77,13 +66,13 @@ def test_input_values_and_their_derivatives_belong_to_the_state(pantograph):
     p.slave.freeFMUstate(state)
 
 
-def test_several_states_live_side_by_side_and_a_handle_can_be_reused(pantograph):
-    p = pantograph()
+def test_several_states_live_side_by_side_and_a_handle_can_be_reused(model, instance):
+    p = instance(model.case.parameters)
     states, values = [], []
     for _ in range(4):
         states.append(p.slave.getFMUstate())
         values.append(p.all_values())
-        p.run(STEP, 5, ["head.z"], signals=CASES["Force"][1])
+        p.run(STEP, 5, [], signals=model.case.inputs)
     for state, expected in zip(reversed(states), reversed(values)):
         p.slave.setFMUstate(state)
         assert p.all_values() == expected
@@ -94,13 +83,15 @@ def test_several_states_live_side_by_side_and_a_handle_can_be_reused(pantograph)
         p.slave.freeFMUstate(state)
 
 
-def test_a_state_can_be_taken_and_restored_before_the_first_step(pantograph):
+def test_a_state_can_be_taken_and_restored_before_the_first_step(model, any_fmu, instance):
     """Instantiated, or in Initialization Mode; parameters and the phase come back too."""
-    p = pantograph({"m1": 8.0}, initialize=False)
+    first, second = model.bounded
+    other = 1.1 * any_fmu.start(first)
+    p = instance({first: other}, initialize=False)
     instantiated = p.slave.getFMUstate()
     p.slave.setupExperiment(startTime=2.0)
     p.slave.enterInitializationMode()
-    p["static_force"] = p["contact_force"] = 100.0
+    p[second] = 0.9 * any_fmu.start(second)
     initializing, values = p.slave.getFMUstate(), p.all_values()
     p.slave.exitInitializationMode()
     p.slave.doStep(2.0, 0.1)
@@ -110,17 +101,17 @@ def test_a_state_can_be_taken_and_restored_before_the_first_step(pantograph):
     p.slave.doStep(2.0, 0.1)
     p.slave.setFMUstate(instantiated)
     p.initialize()
-    assert (p["m1"], p["static_force"]) == (8.0, 120.0)
+    assert (p[first], p[second]) == (other, any_fmu.start(second))
     for state in (instantiated, initializing):
         p.slave.freeFMUstate(state)
 
 
-def test_a_state_brings_its_mode_and_time_with_it(pantograph):
+def test_a_state_brings_its_mode_and_time_with_it(model, instance):
     """A stored state also revives an instance after an error or after terminate."""
-    p = pantograph()
+    p = instance()
     p.step(0.3)
     state, values = p.slave.getFMUstate(), p.all_values()
-    refusal(p.__setitem__, "m1", 1.0)
+    refusal(p.__setitem__, model.bounded[0], 1.0)
     p.slave.setFMUstate(state)
     assert p.all_values() == values
     p.step(0.1)
@@ -131,8 +122,8 @@ def test_a_state_brings_its_mode_and_time_with_it(pantograph):
     p.slave.freeFMUstate(state)
 
 
-def test_a_freed_state_handle_is_null_and_null_can_be_freed(pantograph):
-    p = pantograph()
+def test_a_freed_state_handle_is_null_and_null_can_be_freed(instance):
+    p = instance()
     state = p.slave.getFMUstate()
     p.slave.fmi2FreeFMUstate(p.slave.component, byref(state))
     assert state.value is None
@@ -140,8 +131,8 @@ def test_a_freed_state_handle_is_null_and_null_can_be_freed(pantograph):
     assert refusal(p.slave.setFMUstate, c_void_p()) == fmi2Error
 
 
-def test_foreign_truncated_and_damaged_serialised_states_are_refused(pantograph):
-    p = pantograph()
+def test_foreign_truncated_and_damaged_serialised_states_are_refused(instance):
+    p = instance()
     p.step(0.1)
     state = p.slave.getFMUstate()
     data = p.slave.serializeFMUstate(state)
@@ -164,7 +155,7 @@ def test_foreign_truncated_and_damaged_serialised_states_are_refused(pantograph)
         flipped(len(data) - 1),
     ]
     for bad in damaged:
-        q = pantograph()
+        q = instance()
         values = q.all_values()
         q.log.clear()
         assert refusal(q.slave.deSerializeFMUstate, bad) == fmi2Error
@@ -173,8 +164,8 @@ def test_foreign_truncated_and_damaged_serialised_states_are_refused(pantograph)
         q.close()
 
 
-def test_serialising_into_too_small_a_buffer_is_refused(pantograph):
-    p = pantograph()
+def test_serialising_into_too_small_a_buffer_is_refused(instance):
+    p = instance()
     state = p.slave.getFMUstate()
     size = len(p.slave.serializeFMUstate(state))
     buffer = create_string_buffer(size)
@@ -182,14 +173,11 @@ def test_serialising_into_too_small_a_buffer_is_refused(pantograph):
     p.slave.freeFMUstate(state)
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_reset_equals_a_fresh_instance_bit_for_bit(pantograph, case):
-    parameters, inputs = CASES[case]
-    used, fresh = (
-        pantograph({"m1": 9.0, "suspension": "LinearFree", "bench.frequency": 7.0}, start_time=3.0),
-        pantograph(initialize=False),
-    )
-    used.run(STEP, 50, ["head.z"], signals=CASES["Force"][1])
+@each_case
+def test_reset_equals_a_fresh_instance_bit_for_bit(model, instance, case):
+    used, fresh = instance(model.others, start_time=3.0), instance(initialize=False)
+    used[model.force] = 100.0
+    used.run(STEP, 50, [])
     used.reset()
     for p in (used, fresh):
         p.slave.setupExperiment()
@@ -198,44 +186,76 @@ def test_reset_equals_a_fresh_instance_bit_for_bit(pantograph, case):
     used.reset()
     fresh.reset()
     for p in (used, fresh):
-        p.set(parameters)
+        p.set(case.parameters)
         p.initialize()
-    assert drive_on(used, inputs) == drive_on(fresh, inputs)
+    assert drive_on(used, case) == drive_on(fresh, case)
     states = [p.slave.getFMUstate() for p in (used, fresh)]
     assert used.slave.serializeFMUstate(states[0]) == fresh.slave.serializeFMUstate(states[1])
     for p, state in zip((used, fresh), states):
         p.slave.freeFMUstate(state)
 
 
-def test_instances_do_not_disturb_each_other(pantograph):
-    """Two different instances stepped in turns give what each gives alone."""
+def test_instances_do_not_disturb_each_other(model, instance):
+    """Different instances stepped in turns give what each gives alone."""
 
-    def steps(p: Pantograph, inputs: dict[str, Signal]):
+    def steps(case: Case):
+        p = instance(case.parameters)
         for _ in range(COUNT):
-            yield p.run(STEP, 1, ["head.z", "contact.force", "zspring.alpha"], signals=inputs).tolist()
+            yield p.run(STEP, 1, [model.moved, "energy.work"], signals=case.inputs).tolist()
 
-    alone = [list(steps(pantograph(parameters), inputs)) for parameters, inputs in CASES.values()]
-    together = list(zip(*(steps(pantograph(parameters), inputs) for parameters, inputs in CASES.values())))
-    for n, one in enumerate(alone):
-        assert [row[n] for row in together] == one
+    cases = model.cases.values()
+    alone = [list(steps(case)) for case in cases]
+    assert list(zip(*alone)) == list(zip(*map(steps, cases)))
 
 
-def test_instances_in_threads_give_what_they_give_in_sequence(pantograph):
+def test_both_fmus_live_in_one_process(fmus):
+    """Stepped in turns they give what each gives alone."""
+
+    def steps(model: Model):
+        p = model.instance(fmus[model.name], model.case.parameters)
+        for _ in range(COUNT):
+            yield p.run(STEP, 1, [model.moved, "energy.work"], signals=model.case.inputs).tolist()
+        p.close()
+
+    alone = [list(steps(model)) for model in MODELS]
+    assert list(zip(*alone)) == list(zip(*map(steps, MODELS)))
+
+
+def test_instances_in_threads_give_what_they_give_in_sequence(model, instance):
     """Created in this thread, stepped in others, at the same time."""
-    work = list(CASES.values()) * 2
-    expected = [drive_on(pantograph(parameters), inputs) for parameters, inputs in work]
-    instances = [pantograph(parameters) for parameters, _ in work]
+    work = list(model.cases.values()) * 2
+    expected = [drive_on(instance(case.parameters), case) for case in work]
+    instances = [instance(case.parameters) for case in work]
     with ThreadPoolExecutor(len(work)) as pool:
-        found = list(pool.map(drive_on, instances, [inputs for _, inputs in work]))
+        found = list(pool.map(drive_on, instances, work))
     assert found == expected
 
 
-def test_one_instance_may_change_threads_between_steps(pantograph):
-    parameters, inputs = CASES["Displacement"]
-    expected = drive_on(pantograph(parameters), inputs)
-    p, found = pantograph(parameters), []
-    for _ in range(3):
+@each_case
+def test_one_instance_may_change_threads_between_calls(instance, case):
+    """Instantiated in one thread, initialised, stepped and freed in others."""
+    expected = drive_on(instance(case.parameters), case)
+    p, found = instance(case.parameters, initialize=False), []
+
+    def elsewhere(call, *arguments, **options) -> None:
         with ThreadPoolExecutor(1) as pool:
-            pool.submit(p.run, STEP, COUNT // 3, ["head.z"], signals=inputs).result()
+            pool.submit(call, *arguments, **options).result()
+
+    elsewhere(p.initialize)
+    for _ in range(3):
+        elsewhere(p.run, STEP, COUNT // 3, [], signals=case.inputs)
         found.append(p.all_values())
+    elsewhere(p.close)
     assert found == expected
+
+
+@each_case
+def test_saving_the_state_before_every_step_changes_nothing(instance, case):
+    """As masters do that may have to repeat a step."""
+    saved, plain = instance(case.parameters), instance(case.parameters)
+    for _ in range(COUNT):
+        state = saved.slave.getFMUstate()
+        for p in (saved, plain):
+            p.run(STEP, 1, [], signals=case.inputs)
+        saved.slave.freeFMUstate(state)
+    assert saved.all_values() == plain.all_values()

@@ -9,6 +9,7 @@ import pytest
 from fmpy.fmi2 import fmi2LastSuccessfulTime
 
 from harness import Signal
+from models import each_case, each_case_but
 
 OUTPUTS = ["head.z", "head.v", "contact.force", "upper_frame.z", "lower_frame.z", "zspring.alpha"]
 SMOOTH = {"zspring.tau": 3.0, "c1": 20.0, "solver.step": 5e-4}
@@ -54,39 +55,46 @@ def test_one_huge_step_is_taken(pantograph):
     assert p["lower_frame.z"] > 1
 
 
-@pytest.mark.parametrize("drive", ["Force", "Displacement", "Wire"])
-def test_a_communication_step_is_cut_into_equal_internal_steps(pantograph, drive):
+@each_case_but("Bench")  # which has its own grid, see test_bench.py
+def test_a_communication_step_is_cut_into_equal_internal_steps(any_fmu, instance, case):
     """n = ceil(H / solver.step), and rounding adds none."""
-    for size, expected in ((0.002, 1), (0.1, 50), (0.003, 2), (0.0019, 1), (0.3, 150), (1e-6, 1), (0.7, 350)):
-        p = pantograph({"drive": drive})
-        p.step(size)
-        assert p["solver.steps"] == expected, size
+    largest = any_fmu.start("solver.step")
+    for steps, expected in ((1, 1), (50, 50), (1.5, 2), (0.95, 1), (150, 150), (5e-4, 1), (350, 350)):
+        p = instance(case.parameters)
+        p.step(steps * largest)
+        assert p["solver.steps"] == expected, steps
 
 
-def test_drift_of_time_in_the_last_bit_is_tolerated(pantograph):
+@each_case_but("Bench")
+def test_drift_of_time_in_the_last_bit_is_tolerated(model, instance, case):
     """Hosts add up steps or multiply them; either way, and with a bit too much or too little."""
-    size, count = 0.1, 300
-    added, multiplied = pantograph(), pantograph()
+    size, count = 0.01, 100
+    added, multiplied = instance(case.parameters), instance(case.parameters)
     time = 0.0
     for n in range(count):
         for p in (added, multiplied):
-            p["contact_force"] = 120.0 + math.sin(0.3 * n)
+            for name, signal in case.inputs.items():
+                p[name] = signal(n * size)
         added.slave.doStep(time, size)
         multiplied.slave.doStep(n * size, (n + 1) * size - n * size)
         time += size
-    np.testing.assert_allclose(added.reals(OUTPUTS), multiplied.reals(OUTPUTS), rtol=1e-6)
+    assert time != count * size
+    names = [model.moved, "energy.work", "energy.elastic"]
+    np.testing.assert_allclose(added.reals(names), multiplied.reals(names), rtol=1e-6)
+    steps = added["solver.steps"]
     added.slave.doStep(np.nextafter(time, 0), size)
-    assert added["solver.steps"] == 50 * (count + 1)
+    assert steps == multiplied["solver.steps"] == count / (count + 1) * added["solver.steps"]
 
 
 @pytest.mark.parametrize("start", [100.0, -5.0, 1e6])
-def test_the_start_time_shifts_time_only(pantograph, start):
-    inputs = {"contact_force": Signal.cubed_sines([40.0], [1.2], 120.0)}
-    early = pantograph(SMOOTH)
-    late = pantograph(SMOOTH, start_time=start)
+@each_case
+def test_the_start_time_shifts_time_only(instance, case, start):
+    early = instance(case.parameters)
+    late = instance(case.parameters, start_time=start)
     for n in range(200):
         for p in (early, late):
-            p["contact_force"] = inputs["contact_force"](n * 2**-8)
+            for name, signal in case.inputs.items():
+                p[name] = signal(n * 2**-8)
         early.slave.doStep(n * 2**-8, 2**-8)
         late.slave.doStep(start + n * 2**-8, 2**-8)
     assert early.all_values() == late.all_values()
@@ -173,30 +181,55 @@ def test_a_gap_between_a_position_with_derivatives_and_where_it_was_is_closed_wi
     )
 
 
-def test_the_tolerance_of_the_experiment_changes_nothing(pantograph):
-    """Some hosts always define one, as large as 0.1; the solver has its own."""
-    plain, loose = pantograph({"drive": "Wire"}), pantograph({"drive": "Wire"}, initialize=False)
+@each_case
+def test_the_tolerance_of_the_experiment_changes_nothing(instance, case):
+    """Some hosts always define one, as large as 0.1; the solvers have their own."""
+    plain, loose = instance(case.parameters), instance(case.parameters, initialize=False)
     loose.slave.setupExperiment(tolerance=0.1)
     loose.slave.enterInitializationMode()
     loose.slave.exitInitializationMode()
     for p in (plain, loose):
-        p.run(0.005, 100, [], signals={"wire_height": Signal.cubed_sines([0.003], [1.2])})
+        p.run(0.005, 100, [], signals=case.inputs)
     assert plain.all_values() == loose.all_values()
 
 
-def test_promising_not_to_go_back_changes_nothing(pantograph):
-    p, q = pantograph(), pantograph()
+@each_case
+def test_promising_not_to_go_back_changes_nothing(instance, case):
+    p, q = instance(case.parameters), instance(case.parameters)
     for n in range(50):
-        p["contact_force"] = q["contact_force"] = 120.0 + 10 * math.sin(n)
+        for name, signal in case.inputs.items():
+            p[name] = q[name] = signal(n * 2**-7)
         p.slave.doStep(n * 2**-7, 2**-7, True)
         q.slave.doStep(n * 2**-7, 2**-7, False)
     assert p.all_values() == q.all_values()
 
 
-def test_inputs_set_before_the_experiment_count(pantograph):
-    p = pantograph({"contact_force": 130.0}, initialize=False)
-    p.initialize()
-    assert p["contact.force"] == 130.0
+@each_case
+def test_inputs_set_before_the_experiment_count(instance, case):
+    """And as much as in Initialization Mode, where the standard wants them."""
+    inputs = {name: signal(0.1) for name, signal in case.inputs.items()}
+    early = instance({**case.parameters, **inputs}, initialize=False)
+    early.initialize()
+    late = instance(case.parameters, initialize=False)
+    late.slave.setupExperiment()
+    late.slave.enterInitializationMode()
+    late.all_values()  # as hosts do that log all of them from the first
+    late.set(inputs)
+    late.slave.exitInitializationMode()
+    assert early.all_values() == late.all_values()
+    for p in (early, late):
+        p.run(0.01, 20, [])
+    assert early.all_values() == late.all_values()
+
+
+@each_case
+def test_reading_all_variables_after_every_step_changes_nothing(instance, case):
+    read, plain = instance(case.parameters), instance(case.parameters)
+    for _ in range(30):
+        for p in (read, plain):
+            p.run(0.007, 1, [], signals=case.inputs)
+        read.all_values()
+    assert read.all_values() == plain.all_values()
 
 
 def test_inputs_of_other_drives_do_not_matter(pantograph):
