@@ -1,9 +1,9 @@
 """Set-up shared by scripts/frf and scripts/test: the built package in the virtual environment .venv.
 
 Done in stages, each repeated when what it depends on has changed: the environment with the dependencies of
-pyproject.toml, the package zspring with its FMU; for the tests also all extras of pyproject.toml and the C++
-probes. A stage is struck from the
-stamp file before it starts and written there when it is complete, so an interruption costs that stage only.
+pyproject.toml, the package zspring with its FMU; for the tests also all extras of pyproject.toml, the
+C++ probes and a headless browser. A stage is struck from the stamp file before it starts and written there
+when it is complete, so an interruption costs that stage only.
 Needs nothing but the standard library.
 """
 
@@ -30,6 +30,7 @@ BUILD = ROOT / "build"
 PACKAGE_BUILD = BUILD / "package"
 PROBES_BUILD = BUILD / "probes"
 PROBES = PROBES_BUILD / "bin"
+BROWSER = ROOT / "tests" / "browser"
 ZIG = "python-zig c++"  # from the package ziglang, for systems without a C++ compiler
 
 PACKAGE_SOURCES = ["CMakeLists.txt", "LICENSE", "README.md", "modelDescription.xml", "pyproject.toml",
@@ -97,6 +98,8 @@ def read_stamp() -> dict:
         stamp.pop("package", None)
     if not PROBES.is_dir():
         stamp.pop("probes", None)
+    if not (BROWSER / "node_modules").is_dir():
+        stamp.pop("browser", None)
     return stamp
 
 
@@ -180,6 +183,14 @@ def build_probes(runner: Runner, compiler: str) -> None:
     runner.run(failure, [*cmake, "--build", PROBES_BUILD, "--target", "probes"])
 
 
+def install_browser(runner: Runner, _compiler: str) -> None:
+    """Install what tests/browser/package.json names, with the npm of .venv: the browser is in an npm package."""
+    say("installing a headless browser for the tests (less than a minute)")
+    runner.run("cannot install the browser (is there a network?)",
+               [BIN / "npm", "install", "--prefix", BROWSER, "--no-package-lock", "--no-audit", "--no-fund"],
+               PATH=os.pathsep.join([str(BIN), os.environ.get("PATH", "")]))  # .venv's node before any other
+
+
 def set_up(with_probes: bool) -> None:
     """Bring .venv and the builds up to date; returns at once where they are."""
     wanted = {
@@ -190,6 +201,7 @@ def set_up(with_probes: bool) -> None:
     if with_probes:
         wanted["extras"] = wanted["requirements"]
         wanted["probes"] = fingerprint(*PROBE_SOURCES)
+        wanted["browser"] = fingerprint("tests/browser/package.json")
 
     def outdated(stage: str) -> bool:
         return stamp.get(stage) != wanted[stage]
@@ -208,7 +220,9 @@ def set_up(with_probes: bool) -> None:
             stamp = {stage: wanted[stage] for stage in ("python", "requirements")}
             stamp["compiler"] = compiler
             note_dependencies(stamp)
-        for stage, build in ("extras", install_extras), ("package", build_package), ("probes", build_probes):
+        stages = {"extras": install_extras, "package": build_package, "probes": build_probes,
+                  "browser": install_browser}
+        for stage, build in stages.items():
             if stage in wanted and outdated(stage):
                 stamp.pop(stage, None)
                 write_stamp(stamp)

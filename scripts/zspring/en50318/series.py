@@ -27,7 +27,7 @@ from ..tables import finite_number, read_rows, split_label
 
 UNEVEN = 0.02  # largest relative deviation of a time step: files round their times
 LEAST_RATE = 100.0  # Hz, five samples in a period of 20 Hz
-LEAST_PERIODS = 10  # of 20 Hz in a series
+LEAST_PERIODS = 20  # of 20 Hz in a series, 5 of 5 Hz
 BAND = 20.0  # Hz, upper end of the standard's frequency range
 
 _TIME = {"s": 1.0, "ms": 1e-3}
@@ -53,6 +53,13 @@ class Series:
         """Time between samples in s."""
         return float((self.time[-1] - self.time[0]) / (self.time.size - 1))
 
+    @property
+    def speed(self) -> float | None:
+        """Mean speed in km/h; None without positions."""
+        if self.position is None:
+            return None
+        return float(3.6 * (self.position[-1] - self.position[0]) / (self.time[-1] - self.time[0]))
+
     def check(self) -> Series:
         """The series itself. Raises ZSpringError where it is uneven, too short or too slowly sampled."""
         steps = np.diff(self.time)
@@ -75,8 +82,8 @@ class Series:
         duration = self.time[-1] - self.time[0]
         if duration < LEAST_PERIODS / BAND:
             raise ZSpringError(
-                f"{self.name}: {duration:.4g} s is too short for {BAND:g} Hz: at least {LEAST_PERIODS / BAND:g} s, "
-                f"{LEAST_PERIODS} periods"
+                f"{self.name}: {duration:.4g} s is too short for {BAND:g} Hz: at least {LEAST_PERIODS / BAND:g} s "
+                "are needed"
             )
         if self.position is not None and np.any(np.diff(self.position) < 0):
             at = self.position[np.argmin(np.diff(self.position))]
@@ -108,7 +115,9 @@ def read_series(path: Path, speed: float | None = None, pantograph: int = 1) -> 
         index, unit = columns[name]
         if unit not in factors:
             given = "has no unit" if unit is None else f"unit [{unit}]"
-            raise ZSpringError(f"{path}, column {name!r}: {given}: must be {' or '.join(f'[{u}]' for u in factors)}")
+            raise ZSpringError(
+                f"{path}, column {name!r}: {given}: must be {' or '.join(f'[{u}]' for u in factors)}"
+            )
         numbers = [finite_number(path, line, name, row[index]) for line, row in rows]
         return factors[unit] * np.array(numbers)
 

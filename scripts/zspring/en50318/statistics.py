@@ -37,7 +37,7 @@ FIGURES: dict[str, tuple[str, str, int]] = {
     "support_uplift": ("largest uplift at a support", "mm", 1),
     "contact_point_range": ("range of the contact point", "mm", 1),
     "loss_of_contact": ("loss of contact", "%", 2),
-    "losses": ("losses of contact", "", 0),
+    "losses": ("number of losses of contact", "", 0),
     "longest_loss": ("longest loss of contact", "ms", 1),
 }
 
@@ -76,20 +76,23 @@ def low_pass(series: np.ndarray, step: float, cutoff: float = BAND, order: int =
     if not step < 0.4 / cutoff:
         raise ZSpringError(f"sample step {step:g} s: must be below {0.4 / cutoff:g} s for {cutoff:g} Hz")
     if series.shape[0] * step < 5 / cutoff:
-        raise ZSpringError(f"{series.shape[0] * step:g} s are too short for {cutoff:g} Hz: at least {5 / cutoff:g} s")
+        raise ZSpringError(
+            f"{series.shape[0] * step:g} s are too short for {cutoff:g} Hz: at least {5 / cutoff:g} s"
+        )
     continued = min(series.shape[0] - 1, round(SETTLING / step))
     return sosfiltfilt(butter(order, cutoff, fs=1 / step, output="sos"), series, axis=0, padlen=continued)
 
 
-def statistics(series: Series, section: Section | None = None) -> Statistics:
+def statistics(series: Series, section: Section | None = None, order: int = ORDER) -> Statistics:
     """All figures over a section of the line, or over the whole series.
 
     Uplift is the largest of the supports in the section, its ends included, at any time; of all where the
-    series does not tell where they are. Raises ZSpringError where the section is not inside the series.
+    series does not tell where they are. `order` is that of the filter. Raises ZSpringError where the section
+    is not inside the series.
     """
     chosen = _within(series, section)
-    force = low_pass(series.force, series.step)
-    below = low_pass(series.force, series.step, PARTS)
+    force = low_pass(series.force, series.step, BAND, order)
+    below = low_pass(series.force, series.step, PARTS, order)
     mean, deviation = float(np.mean(force[chosen])), float(np.std(force[chosen]))
     lost = series.force[chosen] <= 0
     lengths = _lengths(lost)
@@ -104,7 +107,9 @@ def statistics(series: Series, section: Section | None = None) -> Statistics:
         "actual_maximum": float(np.max(force[chosen])),
         "actual_minimum": float(np.min(force[chosen])),
         "support_uplift": 1e3 * max(uplift) if uplift else np.nan,
-        "contact_point_range": np.nan if series.height is None else 1e3 * float(np.ptp(series.height[chosen])),
+        "contact_point_range": np.nan
+        if series.height is None
+        else 1e3 * float(np.ptp(series.height[chosen])),
         "loss_of_contact": 100 * float(np.mean(lost)),
         "losses": float(len(lengths)),
         "longest_loss": 1e3 * series.step * max(lengths, default=0),
@@ -116,7 +121,9 @@ def _within(series: Series, section: Section | None) -> np.ndarray:
     if section is None:
         return np.ones(series.time.shape, dtype=bool)
     if series.position is None:
-        raise ZSpringError(f"{series.name}: {section}: needs positions, or the speed to make them of the time")
+        raise ZSpringError(
+            f"{series.name}: {section}: needs positions, or the speed to make them of the time"
+        )
     low, high = section.bounds
     first, last = series.position[[0, -1]]
     if low < first or high > last:

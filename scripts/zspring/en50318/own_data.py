@@ -1,0 +1,176 @@
+"""Reports on a user's own data: a contact force, a simulation beside a line test, a measured FRF."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..fmu import Fmu
+from ..identify.measured import Source
+from ..interrupt import Interrupted, stop_on_interrupt
+from ..parameter_sets import LINES, find_set, read_set
+from ..studies.files import synthetic_note, used_parameters, write_table
+from ..variables import Value
+from . import about, plot, tables
+from .edition import Case, Edition, agreement, judge
+from .frf import FrfComparison, compare_frf
+from .plan import section_of, slug
+from .report import Chapter, Picture, Table
+from .run import finish
+from .series import Series, read_series
+from .statistics import FIGURES, Section, Statistics, statistics
+
+
+@dataclass(frozen=True)
+class OwnData:
+    """A user's contact forces, and what to make of them."""
+
+    series: Path | None  # of a simulation, or of whatever is to be evaluated
+    line_test: Path | None
+    edition: Edition
+    case_title: str | None  # of the case whose spans and ranges are meant
+    speed: float | None  # m/s
+    spans: tuple[int, int] | None
+    span: float  # m
+    first_support: float  # m, where span 1 begins
+    pantograph: int
+
+    def section(self, case: Case | None, catenary: Fmu) -> Section | None:
+        """The spans to evaluate: those asked for, else those of the case; None: the whole series."""
+        if self.spans:
+            return Section(*self.spans, self.span, self.first_support)
+        return section_of(case, catenary, read_set(find_set(case.line, LINES), catenary)) if case else None
+
+
+def report_on(
+    data: OwnData,
+    source: Source | None,
+    parameters: Mapping[str, Value],
+    edges: Sequence[float],
+    direction: str,
+    pantograph: Fmu,
+    catenary: Fmu,
+    folder: Path,
+    jobs: int,
+) -> None:
+    """Evaluate the contact forces, compare the FRF of `source`, write the report and print its tables.
+
+    parameters, edges, direction    of the FRF, see compare_frf
+    """
+    case = data.edition.case(data.case_title) if data.case_title else None
+    section = data.section(case, catenary)
+    made, files, lines, found, settings = [], [], [], {}, {}
+    first = "Simulation" if data.line_test else "Contact force"
+    for title, path in (first, data.series), ("Line test", data.line_test):
+        if path:
+            series = read_series(path, data.speed, data.pantograph)
+            found[title] = statistics(series, section)
+            made.append(series_chapter(series, section, case, title))
+            settings[title] = str(path)
+    if found:
+        lines += tables.as_lines(figures_table(found, str(section or "the whole series")))
+    if len(found) == 2:
+        made.append(agreement_chapter(*found.values(), data.edition))
+    if source:
+        folder.mkdir(parents=True, exist_ok=True)
+        chapter, written = frf_chapter(pantograph, source, parameters, edges, direction, folder, jobs)
+        made.append(chapter)
+        files += written
+        settings["measured FRF"] = str(source.path)
+        lines += [line for b in chapter.blocks if isinstance(b, Table) for line in tables.as_lines(b)]
+    lines += [b for chapter in made for b in chapter.blocks if isinstance(b, str) and "accepted ranges" in b]
+    written = finish(folder, [about.own_data(), *made], (pantograph,), settings, files)
+    print(*lines, " ".join(["written:", *map(str, written)]), sep="\n")
+
+
+def series_chapter(series: Series, section: Section | None, case: Case | None, title: str) -> Chapter:
+    """Figures of one series, beside the ranges of a case if one is chosen."""
+    found = statistics(series, section)
+    judged = judge(found, case.ranges) if case else []
+    place = str(section or "the whole series")
+    chapter = Chapter(
+        title, [f"{series.name}: {series.time.size} samples, one each {1e3 * series.step:.4g} ms."]
+    )
+    if judged:
+        chapter.blocks.append(tables.verdict(case.title, {title.lower(): judged}) + ".")
+    chapter.blocks += [
+        tables.case_table(found, judged, series.speed, f"{title}: {place}"),
+        Picture(plot.force_figure(series, section, found, title), f"{title}: {place}", f"{slug(title)}.png"),
+    ]
+    if section and section.last > section.first:
+        by_span = {str(s).split(",")[0]: statistics(series, s) for s in section.single_spans()}
+        chapter.blocks.append(tables.spans_table(found, by_span, f"{title}, span by span"))
+    return chapter
+
+
+def agreement_chapter(simulated: Statistics, measured: Statistics, edition: Edition) -> Chapter:
+    """A simulation beside the line test."""
+    limits = {
+        name: limit
+        for name, limit in edition.agreement.items()
+        if measured[name] and math.isfinite(measured[name]) and math.isfinite(simulated[name])
+    }
+    judged = agreement(simulated, measured, limits)
+    chapter = Chapter(
+        "Simulation and line test", [f"Accepted differences: {' '.join(edition.source.split())}"]
+    )
+    if judged:
+        chapter.blocks.append(
+            tables.verdict("Simulation against line test", {"the line test": judged}, "%") + "."
+        )
+    chapter.blocks.append(tables.agreement_table(simulated, measured, judged))
+    return chapter
+
+
+def frf_chapter(
+    fmu: Fmu,
+    source: Source,
+    parameters: Mapping[str, Value],
+    edges: Sequence[float],
+    direction: str,
+    folder: Path,
+    jobs: int,
+) -> tuple[Chapter, list[Path]]:
+    """The FMU's frequency response beside a measured one; the files written. Raises Interrupted after Ctrl-C."""
+    with stop_on_interrupt() as stop:
+        comparisons = compare_frf(fmu, source, parameters, edges, direction, jobs, stop)
+        if stop.is_set():
+            raise Interrupted("interrupted: the frequency response is not complete, nothing is written")
+    path = folder / "frf-comparison.csv"
+    _write_frf(path, fmu, source, comparisons)
+    note = synthetic_note(fmu, used_parameters(fmu, parameters))
+    title = f"{source.path.name} and {fmu.description.modelName}{note}"
+    text = (
+        f"Measured: {source.path}, force counted as that on the {source.force}. Computed: the FMU on its own "
+        f"bench, stepped sine at the same frequencies and amplitudes, sweep {direction}. Errors are relative to "
+        "the measured value; a positive phase error means that the computed response is ahead."
+    )
+    failed = sum(int((c.computed != c.computed).sum()) for c in comparisons)
+    missing = [f"{failed} points could not be computed."] if failed else []
+    picture = Picture(plot.frf_comparison_figure(comparisons, edges, title), title, "frf-comparison.png")
+    blocks = [text, *missing, tables.frf_table(comparisons), picture]
+    return Chapter("Pantograph: measured and computed FRF", blocks), [path]
+
+
+def figures_table(found: Mapping[str, Statistics], caption: str) -> Table:
+    """Figures of the series side by side."""
+    rows = [
+        [tables.labelled(name), *(tables.number(name, each[name]) for each in found.values())]
+        for name in FIGURES
+    ]
+    return Table(caption, ["", *found], rows)
+
+
+def _write_frf(path: Path, fmu: Fmu, source: Source, comparisons: Sequence[FrfComparison]) -> None:
+    columns = ["amplitude", "frequency [Hz]", "amplitude [m/s2]"]
+    columns += [f"{kind}_{part} [m/N]" for kind in ("measured", "computed") for part in ("re", "im")]
+    rows = [
+        [each.measured.label, float(f), float(a), m.real, m.imag, c.real, c.imag]
+        for each in comparisons
+        for f, a, m, c in zip(
+            each.measured.frequency, each.measured.acceleration, each.measured.H, each.computed
+        )
+    ]
+    write_table(path, {**fmu.identity, "measured": str(source.path)}, columns, rows)

@@ -1,0 +1,173 @@
+"""The runs of the validation: reference cases, what each free choice does to them, and the heads compared."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+
+from ..couple.journey import LineExtent
+from ..couple.mean_force import mean_force
+from ..errors import ZSpringError
+from ..fmu import Fmu
+from ..parameter_sets import LINES, find_set, read_set
+from ..variables import Value, parse
+from .edition import Case, Edition
+from .statistics import Section
+
+HEAD_SPEEDS = (200.0, 225.0, 250.0, 275.0, 300.0, 325.0, 350.0)  # km/h
+SHOWN_HEADS = 300.0  # km/h at which the forces of the heads are drawn, if it is one of the speeds
+HEAD_LINE = "benchmark-2015"
+HEAD_SPANS = (4, 7)
+
+Parameters = Mapping[str, Value]
+
+
+@dataclass(frozen=True)
+class Run:
+    """One pantograph along one line."""
+
+    group: str  # "reference", "sensitivity" or "heads"
+    label: str  # title of the case, the choice, or the head
+    of: str  # name of the edition or of the line; with the title of the case where the label is a choice
+    speed: float  # km/h
+    section: Section
+    line: Parameters
+    pantograph: Parameters
+    uplift: float = 0.0  # N, extra force on the upper frame
+    step: float = 1e-3  # s
+    scheme: str = "implicit"
+    start_up: str = "ramp"
+    start: float | None = None  # m along the line; None: half a span
+    series: str = ""  # name of the file that its series is written to; none: not kept
+
+    @property
+    def key(self) -> str:
+        """Tells runs apart, by everything that changes their numbers."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()[:12]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Another choice where the published data leave one, or another numerical setting."""
+
+    label: str
+    line: Mapping[str, Value] = field(default_factory=dict)
+    run: Mapping[str, object] = field(default_factory=dict)
+    spans: tuple[int, int] | None = None  # evaluated, if others
+
+
+# 0.5 % of critical damping at 1 and 20 Hz, by Rayleigh's damping: 2 zeta w1 w2 / (w1 + w2), 2 zeta / (w1 + w2).
+_RATIO = {"damping.mass": 0.0598, "damping.stiffness": 7.58e-5}
+
+_NO_CLAMPS = {"dropper.clamp_contact": 0.0, "dropper.clamp_messenger": 0.0}
+
+CHOICES = (
+    Choice("no damping", {"damping.mass": 0.0, "damping.stiffness": 0.0}),
+    Choice("damping ratio 0.005 at 1 and 20 Hz", _RATIO),
+    # As identified on a line in service, by the abstract of that paper; 9 % of critical at 10 Hz.
+    Choice("damping 0.02845 1/s, 0.00274 s", {"damping.mass": 0.02845, "damping.stiffness": 0.00274}),
+    Choice("no dropper clamps", _NO_CLAMPS),
+    Choice("no clamps, no damping", {**_NO_CLAMPS, "damping.mass": 0.0, "damping.stiffness": 0.0}),
+    # The set of doi 10.1080/00423114.2022.2085586 as others quote it.
+    Choice("no clamps, ratio 0.005, arm 300 N/m", {**_NO_CLAMPS, **_RATIO, "steady_arm.stiffness": 300.0}),
+    Choice("droppers of 0.117 kg/m", {"dropper.mass": 0.117}),
+    Choice("steady arm 1 kg", {"steady_arm.mass": 1.0}),
+    Choice("steady arm 300 N/m", {"steady_arm.stiffness": 300.0}),
+    Choice("no bending stiffness", {"contact_wire.EI": 0.0, "messenger.EI": 0.0}),
+    Choice("messenger support 500 kN/m", {"support.stiffness": 500_000.0}),
+    Choice("static force at the lifted wire", run={"start_up": "direct"}),
+    Choice("start at 10 m", run={"start": 10.0}),
+    Choice("start at 60 m", run={"start": 60.0}),
+    Choice("start at 90 m", run={"start": 90.0}),
+    Choice("20 spans, of them 10 and 11", {"line.spans": 20}, spans=(10, 11)),
+    Choice("elements of 0.5 m", {"mesh.element": 0.5}),
+    Choice("step 0.5 ms", {"solver.step": 5e-4}, {"step": 5e-4}),
+    Choice("explicit coupling", run={"scheme": "explicit"}),
+)  # fmt: skip
+
+HEADS = (
+    ("linear, k1", "dsa-380", {"suspension": "Linear"}),
+    (
+        "Z-spring, regularized friction",
+        "dsa-380-zspring",
+        {"suspension": "ZSpring", "friction": "Regularized"},
+    ),
+    ("Z-spring, Coulomb friction", "dsa-380-zspring", {"suspension": "ZSpring", "friction": "Coulomb"}),
+    ("Z-spring linearized, rods free", "dsa-380-zspring", {"suspension": "LinearFree"}),
+)
+
+
+def reference_runs(edition: Edition, catenary: Fmu, pantograph: Fmu) -> list[Run]:
+    """A run for each case of an edition. Raises ZSpringError where a set or the spans do not fit."""
+    return [_run_of(edition, case, catenary, pantograph) for case in edition.cases]
+
+
+def sensitivity_runs(references: Sequence[Run]) -> list[Run]:
+    """Each reference run with each other choice."""
+    runs = []
+    for run in references:
+        for choice in CHOICES:
+            named = {
+                "group": "sensitivity",
+                "label": choice.label,
+                "of": f"{run.of}, {run.label}",
+                "series": "",
+            }
+            changed = replace(run, line={**run.line, **choice.line}, **choice.run, **named)
+            if choice.spans:
+                first, last = choice.spans
+                changed = replace(changed, section=replace(run.section, first=first, last=last))
+            runs.append(changed)
+    return runs
+
+
+def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPEEDS) -> list[Run]:
+    """The linear and the Z-spring head along the same line, with the mean force of the law for AC lines."""
+    line = read_set(find_set(HEAD_LINE, LINES), catenary)
+    extent = LineExtent.of(catenary, line)
+    section = Section(*HEAD_SPANS, extent.span)
+    shown = SHOWN_HEADS if SHOWN_HEADS in speeds else speeds[-1]
+    runs = []
+    for speed in speeds:
+        for label, name, given in HEADS:
+            parameters = read_set(find_set(name), pantograph)
+            parameters |= {key: parse(pantograph.variables[key], text) for key, text in given.items()}
+            parameters["static_force"] = mean_force("AC", 0.0)
+            uplift = mean_force("AC", speed) - mean_force("AC", 0.0)
+            kept = f"{slug(label)}-{speed:g}-km-h.csv" if speed == shown else ""
+            runs.append(Run("heads", label, HEAD_LINE, speed, section, line, parameters, uplift, series=kept))
+    return runs
+
+
+def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run:
+    line = read_set(find_set(case.line, LINES), catenary)
+    parameters = {**read_set(find_set(case.pantograph), pantograph), "static_force": case.static_force}
+    return Run(
+        "reference",
+        case.title,
+        edition.name,
+        case.speed,
+        section_of(case, catenary, line),
+        line,
+        parameters,
+        series=f"{slug(f'{edition.name} {case.title}')}.csv",
+    )
+
+
+def section_of(case: Case, catenary: Fmu, line: Parameters) -> Section:
+    """The evaluated spans of a case. Raises ZSpringError where the line has not so many."""
+    extent = LineExtent.of(catenary, line)
+    first, last = case.spans
+    if not 2 <= first <= last <= extent.spans - 1:
+        raise ZSpringError(
+            f"{case.title}: spans {first} to {last}: must be in 2 .. {extent.spans - 1}, between the first and "
+            f"the last span of the line"
+        )
+    return Section(first, last, extent.span)
+
+
+def slug(text: str) -> str:
+    """Text as a part of a file's name."""
+    return "-".join("".join(c if c.isalnum() else " " for c in text.lower()).split())

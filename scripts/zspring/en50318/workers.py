@@ -1,0 +1,93 @@
+"""Runs along lines in processes of their own, each of which opens the FMUs once."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..couple.result import write_result
+from ..couple.run import run_line
+from ..couple.schemes import Coupling
+from ..couple.summary import series
+from ..errors import ZSpringError
+from ..fmu import Fmu
+from .plan import Run
+from .statistics import Statistics, statistics
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What a run came to."""
+
+    run: Run
+    statistics: Statistics
+    seconds: float  # of CPU
+
+
+def run_all(
+    runs: Sequence[Run], catenary: Path, pantograph: Path, folder: Path, jobs: int, stop: threading.Event
+) -> Iterator[Finished]:
+    """Runs as they finish, `jobs` at a time. Once `stop` is set none is begun, and those begun still finish.
+
+    folder      where the series of the runs that keep theirs are written
+    Raises ZSpringError with the name of a run that fails; others that were begun are lost.
+    """
+    waiting = list(runs)
+    if not waiting:
+        return
+    jobs = min(jobs, len(waiting))
+    context = multiprocessing.get_context("spawn")  # fork is not safe beside threads, and Windows has none
+    with ProcessPoolExecutor(jobs, context, _open, (catenary, pantograph)) as pool:
+        busy: set[Future[Finished]] = set()
+        while busy or (waiting and not stop.is_set()):
+            while waiting and len(busy) < jobs and not stop.is_set():
+                busy.add(pool.submit(_execute, waiting.pop(0), folder))
+            done, busy = wait(busy, timeout=0.5, return_when=FIRST_COMPLETED)
+            for future in done:
+                try:
+                    yield future.result()
+                except BrokenProcessPool:
+                    raise ZSpringError("a process of the runs was ended from outside") from None
+
+
+_fmus: list[Fmu] = []  # of this process: catenary, pantograph
+
+
+def _open(catenary: Path, pantograph: Path) -> None:
+    """Make ready a process. Ctrl-C, which reaches all processes, is the first one's business."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _fmus[:] = Fmu(catenary), Fmu(pantograph)
+
+
+def _execute(run: Run, folder: Path) -> Finished:
+    """One run; its series goes to a file that is whole or not there. Raises ZSpringError naming the run."""
+    catenary, pantograph = _fmus
+    try:
+        result = run_line(
+            catenary,
+            pantograph,
+            run.line,
+            [run.pantograph],
+            run.speed / 3.6,
+            run.start,
+            step=run.step,
+            coupling=Coupling(scheme=run.scheme),
+            start_up=run.start_up,
+            uplift=run.uplift,
+        )
+        found = statistics(series(result, 0), run.section)
+    except ZSpringError as error:
+        raise ZSpringError(f"{run.of}, {run.label}, {run.speed:g} km/h: {error}") from None
+    if run.series:
+        path = folder / run.series
+        unfinished = path.with_name(f"unfinished-{path.name}")
+        write_result(result, unfinished)
+        os.replace(unfinished, path)
+    return Finished(run, found, result.elapsed)

@@ -1,0 +1,54 @@
+// Opens a page in a headless browser and prints as JSON what happened and what is there.
+//
+//     node open.mjs URL FOLDER
+//
+// FOLDER: where the browser is unpacked, on Linux. Other systems' own Chrome or Edge is used.
+
+import { chromium } from "playwright-core";
+
+const [, , url, folder] = process.argv;
+
+async function launch() {
+  if (process.platform !== "linux") {
+    return chromium.launch({ channel: process.platform === "win32" ? "msedge" : "chrome" });
+  }
+  // The package unpacks the libraries it brings only where it believes itself in this environment.
+  process.env.AWS_EXECUTION_ENV = "AWS_Lambda_nodejs24.x";
+  process.env.TMPDIR = folder;
+  const { default: packed } = await import("@sparticuz/chromium");
+  packed.setGraphicsMode = false;
+  const executablePath = await packed.executablePath();
+  return chromium.launch({ executablePath, args: ["--no-sandbox", "--no-zygote", "--disable-gpu"] });
+}
+
+const browser = await launch();
+try {
+  const page = await browser.newPage();
+  const errors = [];
+  const requests = [];
+  page.on("pageerror", (error) => errors.push(String(error)));
+  page.on("console", (message) => {
+    if (message.type() === "error" || message.type() === "warning") errors.push(message.text());
+  });
+  page.on("requestfailed", (request) => errors.push(`failed: ${request.url().slice(0, 80)}`));
+  page.on("request", (request) => {
+    if (!request.url().startsWith("data:")) requests.push(request.url());
+  });
+  await page.goto(url, { waitUntil: "networkidle" });
+  const found = await page.evaluate(() => ({
+    title: document.title,
+    headings: Array.from(document.querySelectorAll("h2"), (heading) => heading.textContent),
+    images: Array.from(document.images, (image) => ({
+      alt: image.alt,
+      width: image.complete ? image.naturalWidth : 0,
+      height: image.complete ? image.naturalHeight : 0,
+    })),
+    tables: Array.from(document.querySelectorAll("table"), (table) =>
+      Array.from(table.rows, (row) => Array.from(row.cells, (cell) => cell.textContent.trim())),
+    ),
+    tooWide: document.documentElement.scrollWidth > window.innerWidth,
+  }));
+  console.log(JSON.stringify({ errors, requests, ...found }));
+} finally {
+  await browser.close();
+}
