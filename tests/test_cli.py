@@ -248,6 +248,11 @@ def test_simulate_gives_what_the_fmu_gives(pantograph, tmp_path):
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-15)
 
 
+def test_info_lists_every_variable_of_the_catenary(fmu_catenary, tmp_path):
+    out, _ = zspring(tmp_path, "info", "--catenary")
+    assert set(fmu_catenary.variables) <= {line.split()[0] for line in out.splitlines()}
+
+
 def test_info_lists_every_variable(fmu, tmp_path):
     out, _ = zspring(tmp_path, "info")
     listed = [line.split()[0] for line in out.splitlines()]
@@ -288,6 +293,7 @@ def test_info_lists_every_variable(fmu, tmp_path):
         (["simulate", "--step", "0"], ["0"]),
         (["simulate", "--stop", "-1"], ["-1"]),
         (["info", "zspring.x"], ["zspring.x"]),
+        (["info", "--catenary", "--fmu", "some.fmu"], ["some.fmu", "--catenary"]),
         (["fly"], ["fly"]),
     ],
 )

@@ -10,6 +10,7 @@ import click
 from fmpy.model_description import ScalarVariable
 
 from .errors import ZSpringError, did_you_mean
+from .fmu import CATENARY, installed_fmu
 from .options import fmu_option, opened
 from .parameter_sets import LINES, PANTOGRAPHS, describe_set, packaged_sets
 from .variables import Variables, parse, text
@@ -73,8 +74,9 @@ def set_lines() -> list[str]:
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option("--path", "only_path", is_flag=True, help="Print only where the FMU is.")
 @click.option("--sets", is_flag=True, help="List the parameter sets of pantographs and lines, each with its source.")
+@click.option("--catenary", is_flag=True, help="Of the catenary's FMU instead of the pantograph's.")
 @fmu_option
-def info(names, only_path, sets, fmu_path) -> None:
+def info(names, only_path, sets, catenary, fmu_path) -> None:
     """List the FMU's variables, or those with these NAMEs (zspring.* for all that begin so).
 
     `cp $(zspring info --path) .` copies the FMU for use in another tool.
@@ -82,7 +84,9 @@ def info(names, only_path, sets, fmu_path) -> None:
     if sets:
         print(*set_lines(), sep="\n")
         return
-    with opened(fmu_path) as fmu:
+    if catenary and fmu_path:
+        raise ZSpringError(f"--fmu {fmu_path}: must not come with --catenary")
+    with opened(installed_fmu(CATENARY) if catenary else fmu_path) as fmu:
         if only_path:
             print(fmu.path.absolute())
             return
