@@ -31,7 +31,6 @@ class Model:
     others      parameters far from those of the cases
     bounded     two fixed Real parameters with a lower bound
     choice      an enumeration parameter
-    count       an Integer parameter
     force       a Real input, and a Real output that it moves
     discarded   a run whose second step of 0.1 s, with this force in the input `force`, is discarded
     """
@@ -43,7 +42,6 @@ class Model:
     others: Mapping[str, Value]
     bounded: tuple[str, str]
     choice: str
-    count: str
     force: str
     moved: str
     discarded: tuple[Mapping[str, Value], float]
@@ -82,7 +80,6 @@ MODELS = [
         others={"m1": 9.0, "suspension": "LinearFree", "bench.frequency": 7.0},
         bounded=("m1", "m2"),
         choice="drive",
-        count="solver.max_iterations",
         force="contact_force",
         moved="head.z",
         discarded=(HOPELESS, 300.0),
@@ -111,7 +108,6 @@ MODELS = [
         others={"line.spans": 3, "contact_wire.mass": 1.0, "travel": "Position", "pantograph[1].position": 20.0},
         bounded=("contact_wire.mass", "contact_wire.tension"),
         choice="travel",
-        count="line.spans",
         force="pantograph[1].force",
         moved="pantograph[1].uplift",
         discarded=(AT_THE_END, 200.0),
@@ -122,9 +118,8 @@ MODELS = [
 def each_case_but(*left_out: str) -> pytest.MarkDecorator:
     """Parameters `model` and `case` of a test: every case of both FMUs but these."""
     cases = [(m, name, case) for m in MODELS for name, case in m.cases.items() if name not in left_out]
-    return pytest.mark.parametrize(
-        "model, case", [pytest.param(m, case, id=f"{m.name}-{name}") for m, name, case in cases], indirect=["model"]
-    )
+    parameters = [pytest.param(m, case, id=f"{m.name}-{name}") for m, name, case in cases]
+    return pytest.mark.parametrize("model, case", parameters, indirect=["model"])
 
 
 each_case = each_case_but()

@@ -1,4 +1,5 @@
-"""What the README shows is real: its commands run, in order and in one folder, and print what it says.
+"""What README and docs show is real: their commands run, each page's in order and in one folder, and print what
+they say.
 
 Convention: in ```console blocks a line "$ command" (continued on lines "> ...") is run; its output
 follows, where a line "..." stands for any lines. Blocks of ```python are run as a script; blocks of
@@ -15,7 +16,13 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-README = Path(__file__).parent.parent / "README.md"
+import pytest
+from fmpy import read_model_description
+from zspring.fmu import CATENARY, PANTOGRAPH, installed_fmu
+
+ROOT = Path(__file__).parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
 TIMING = re.compile(r"\d+(?:\.\d+)?(?= (?:s|ms|us|points/s|steps/s)\b)")
 
@@ -26,9 +33,9 @@ class Command:
     output: list[str] = field(default_factory=list)
 
 
-def blocks() -> list[tuple[str, str]]:
+def blocks(page: Path) -> list[tuple[str, str]]:
     """Language and text of each fenced block."""
-    return re.findall(r"^```(\w+)\n(.*?)^```$", README.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    return re.findall(r"^```(\w+)\n(.*?)^```$", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 
 def commands(text: str) -> list[Command]:
@@ -67,7 +74,11 @@ def matches(expected: list[str], actual: list[str]) -> bool:
     return bool(actual) and same_line(expected[0], actual[0]) and matches(expected[1:], actual[1:])
 
 
-def test_the_commands_run_and_print_what_the_readme_shows(tmp_path):
+RUN = [page for page in PAGES if {"python", "console"} & dict(blocks(page)).keys()]
+
+
+@pytest.mark.parametrize("page", RUN, ids=lambda page: page.stem)
+def test_the_commands_run_and_print_what_the_page_shows(page, tmp_path):
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     environment = {**os.environ, "PATH": path, "MPLBACKEND": "Agg", "COLUMNS": "120"}
 
@@ -85,20 +96,33 @@ def test_the_commands_run_and_print_what_the_readme_shows(tmp_path):
         assert done.returncode == 0, f"{command}\n{done.stdout}"
         return [line for line in done.stdout.splitlines() if line.strip()]
 
-    count = 0
-    for language, text in blocks():
+    for language, text in blocks(page):
         if language == "python":
             run([sys.executable, "-c", text])
         elif language == "console":
             for command in commands(text):
                 actual = run(re.sub(r"^scripts/frf\b", "zspring frf", command.text))
                 assert matches(command.output, actual), "\n".join([f"$ {command.text}", *actual])
-                count += 1
-    assert count > 0
 
 
-def test_the_files_the_readme_links_to_exist():
-    targets = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", README.read_text(encoding="utf-8"))
-    for target in targets:
+@each_page
+def test_what_a_page_links_to_exists(page):
+    """Files, and headings in them."""
+    for target, heading in re.findall(r"\]\(([^)#]*)(?:#([^)]*))?\)", page.read_text(encoding="utf-8")):
         if "://" not in target:
-            assert (README.parent / target).exists(), target
+            linked = page.parent / target if target else page
+            assert linked.exists(), target
+            if heading:
+                headings = re.findall(r"^#+ (.*)$", linked.read_text(encoding="utf-8"), re.MULTILINE)
+                assert heading in [re.sub(r"[^\w -]", "", h.lower()).replace(" ", "-") for h in headings], heading
+
+
+def test_every_variable_that_a_page_names_exists():
+    """Names with a dot or a bracket, in code style, of things that look like variables of the FMUs."""
+    descriptions = [read_model_description(installed_fmu(model)) for model in (PANTOGRAPH, CATENARY)]
+    known = {v.name for description in descriptions for v in description.modelVariables}
+    families = {re.split(r"[.\[]", name)[0] for name in known if "." in name}
+    for page in PAGES:
+        for name in re.findall(r"`([a-z_]\w*(?:\[\d+\])?\.[\w.\[\]]+)`", page.read_text(encoding="utf-8")):
+            if re.split(r"[.\[]", name)[0] in families:
+                assert name in known, f"{page.name}: {name}"

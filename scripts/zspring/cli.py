@@ -7,7 +7,9 @@ import sys
 import click
 
 from .couple.command import couple
+from .en50318.command import en50318
 from .errors import ZSpringError
+from .export import export
 from .frf.command import frf
 from .identify.command import identify
 from .info import info
@@ -27,7 +29,10 @@ def commands() -> None:
     """DSA-380 pantograph with Z-spring head suspension, as an FMI 2.0 co-simulation FMU."""
 
 
-for command in (frf, simulate, identify, info, static, newton, integrators, mechanism, linearize, study, couple):
+for command in (
+    *(frf, simulate, identify, info, export),
+    *(static, newton, integrators, mechanism, linearize, study, couple, en50318),
+):
     commands.add_command(command)
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
 
+from ..export import copy_without_enumerations
 from ..fmu import Fmu
 from ..parameter_sets import write_set
 from .run import LineRun
@@ -38,7 +38,7 @@ def write_ssp(run: LineRun, path: Path) -> None:
         sources = {}
         for fmu in run.catenary, run.pantograph:
             copy = Path(folder, fmu.path.name)
-            _copy_without_enumerations(fmu, copy)
+            copy_without_enumerations(fmu, copy)
             sources[fmu] = f"resources/{copy.name}"
             archive.write(copy, sources[fmu])
         system = ET.Element(
@@ -124,26 +124,3 @@ def _description(run: LineRun, system: ET.Element) -> bytes:
     ET.SubElement(algorithm, f"{{{_OSP}}}FixedStepAlgorithm", baseStepSize=repr(step))
     ET.indent(root)
     return ET.tostring(root, encoding="utf-8", xml_declaration=True)
-
-
-def _copy_without_enumerations(fmu: Fmu, path: Path) -> None:
-    """Copy an FMU with its enumerations declared as Integers of the same values; the libraries stay as they are.
-
-    libcosim and Ecos ignore variables of type Enumeration, so that drive and suspension could not be set.
-    FMI 2.0 sets both types with fmi2SetInteger.
-    """
-    counts = {
-        v.declaredType.name: len(v.declaredType.items) for v in fmu.variables if v.type == "Enumeration"
-    }
-
-    def integer(found: re.Match) -> str:
-        return f'<Integer min="1" max="{counts[found[1]]}" start="{found[2]}"/>'
-
-    with zipfile.ZipFile(fmu.path) as old, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as new:
-        for entry in old.infolist():
-            content = old.read(entry)
-            if entry.filename == "modelDescription.xml":
-                text = content.decode()
-                text = re.sub(r'<Enumeration declaredType="(\w+)" start="(\d+)"\s*/>', integer, text)
-                content = text.encode()
-            new.writestr(entry, content)

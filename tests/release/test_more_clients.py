@@ -1,0 +1,185 @@
+"""Other people's tools that take time or other languages to install: Java with Maven, Rust with cargo.
+
+VDMCheck2 checks the model descriptions; the others run the FMUs to the same results as our own driver,
+communication step by communication step.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import csv
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from zspring.export import copy_without_enumerations
+from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
+
+from client_runs import RUNS, Run
+
+each_run = pytest.mark.parametrize("run", RUNS.values(), ids=RUNS)
+TOOLS = Path(__file__).parents[2] / "build" / "clients"  # kept from one run to the next
+
+VDMCHECK = "1.1.3"
+FMI_SIM = "0.7.0"
+
+
+def run_tool(*command: str | Path, folder: Path | None = None, hint: str = "") -> str:
+    """Output of a command; `hint` tells how to install it."""
+    if shutil.which(command[0]) is None:
+        pytest.fail(f"{command[0]} is not installed: {hint}", pytrace=False)
+    done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+@pytest.fixture(scope="session")
+def vdmcheck() -> Path:
+    """Folder with VDMCheck2 and what it needs, laid out as it wants."""
+    folder = TOOLS / f"vdmcheck2-{VDMCHECK}"
+    if not (folder / "fmi2-rule-model").is_dir():
+        folder.mkdir(parents=True, exist_ok=True)
+        dependency = "<groupId>org.into-cps.vdmcheck.fmi2</groupId><artifactId>vdmcheck2</artifactId>"
+        (folder / "pom.xml").write_text(
+            '<project xmlns="http://maven.apache.org/POM/4.0.0"><modelVersion>4.0.0</modelVersion>'
+            "<groupId>zspring</groupId><artifactId>clients</artifactId><version>1</version><dependencies>"
+            f"<dependency>{dependency}<version>{VDMCHECK}</version></dependency></dependencies></project>"
+        )
+        run_tool(
+            *("mvn", "-q", "-B", "dependency:copy-dependencies"),
+            *("-Dmdep.stripVersion=true", f"-DoutputDirectory={folder}"),
+            folder=folder,
+            hint="it comes with Maven (Debian, Ubuntu: apt install maven)",
+        )
+        for jar in "vdmcheck2.jar", "static-model.jar", "rule-model.jar":  # the last one last: see above
+            with zipfile.ZipFile(folder / jar) as archive:
+                archive.extractall(folder)
+    return folder
+
+
+def vdmchecked(folder: Path, file: Path) -> str:
+    command = ["java", "-cp", "vdmcheck2.jar", "VDMCheckPlus", file]
+    done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    return done.stdout
+
+
+def test_vdmcheck_finds_no_error(vdmcheck, any_fmu):
+    assert vdmchecked(vdmcheck, any_fmu.path).strip() == "No errors found."
+
+
+def test_vdmcheck_would_find_one(vdmcheck, any_fmu, tmp_path):
+    bad = tmp_path / "bad.fmu"
+    with zipfile.ZipFile(any_fmu.path) as old, zipfile.ZipFile(bad, "w") as new:
+        text = old.read("modelDescription.xml").decode()
+        text = text.replace('causality="input"', 'causality="input" initial="exact"')
+        new.writestr("modelDescription.xml", text)
+    assert "validVariableAttributes" in vdmchecked(vdmcheck, bad)
+
+
+@pytest.fixture(scope="session")
+def fmi_sim() -> Path:
+    """The program fmi-sim of the crate of that name; compiled once, in five to ten minutes."""
+    folder = TOOLS / f"fmi-sim-{FMI_SIM}"
+    program = folder / "bin" / ("fmi-sim.exe" if sys.platform == "win32" else "fmi-sim")
+    if not program.exists():
+        run_tool(
+            *("cargo", "install", "--quiet", "--locked", "fmi-sim", "--version", FMI_SIM, "--root", folder),
+            hint="it comes with Rust (Debian, Ubuntu: apt install cargo, or rustup.rs)",
+        )
+    return program
+
+
+@each_run
+def test_fmi_sim_simulates(fmi_sim: Path, run: Run, tmp_path):
+    given, written = tmp_path / "inputs.csv", tmp_path / "outputs.csv"
+    with open(given, "w", newline="") as file:
+        csv.writer(file).writerows([["time", *run.inputs], *zip(run.time, *run.inputs.values())])
+    starts = [text for name, value in run.parameters.items() for text in ("--init-values", f"{name}={value}")]
+    run_tool(
+        *(fmi_sim, "--model", run.path, "-i", given, "-o", written, "co-simulation", *starts),
+        *("--step", str(run.step), "--output-interval", str(run.step), "-f", str(len(run.time) * run.step)),
+    )
+    with open(written, newline="") as file:
+        rows = list(csv.DictReader(file))[1:]
+    run.check(np.array([[float(row[name]) for name in run.outputs] for row in rows]))
+
+
+@each_run
+def test_ecos_simulates(run: Run, tmp_path):
+    """Ecos through ecospy; it cannot set enumerations."""
+    if sys.platform == "linux":  # ecospy links libtbb.so.12 and leaves it to the system; PyPI's tbb has it
+        ctypes.CDLL(f"{sys.prefix}/lib/libtbb.so.12", ctypes.RTLD_GLOBAL)
+    from ecospy import EcosSimulation, EcosSimulationStructure
+
+    path = tmp_path / "model.fmu"
+    with Fmu(installed_fmu(run.model)) as fmu:
+        copy_without_enumerations(fmu, path)
+    rows = []
+    with EcosSimulationStructure() as structure:
+        structure.add_model("model", path)
+        structure.add_parameter_set("start", {f"model::{k}": value for k, value in run.parameters.items()})
+        with EcosSimulation(structure=structure, step_size=run.step) as simulation:
+            simulation.init(parameter_set="start")
+            for values in zip(*run.inputs.values()):
+                for name, value in zip(run.inputs, values):
+                    simulation.set_real(f"model::{name}", float(value))
+                simulation.step()
+                rows.append([simulation.get_real(f"model::{name}") for name in run.outputs])
+            simulation.terminate()
+    run.check(np.array(rows))
+
+
+CONTAINER = """rule;from_fmu;from_port;to_fmu;to_port
+FMU;Catenary.fmu;;;
+FMU;ZSpringPantograph.fmu;;;
+LINK;Catenary.fmu;pantograph[1].wire_height;ZSpringPantograph.fmu;wire_height
+LINK;ZSpringPantograph.fmu;contact.force;Catenary.fmu;pantograph[1].force
+INPUT;;speed;Catenary.fmu;pantograph[1].speed
+OUTPUT;ZSpringPantograph.fmu;contact.force;;force
+OUTPUT;Catenary.fmu;pantograph[1].wire_height;;height
+START;Catenary.fmu;line.spans;4;
+START;Catenary.fmu;pantograph[1].start;60.0;
+START;ZSpringPantograph.fmu;drive;3;
+"""
+
+
+def test_fmucontainer_couples_both_fmus_into_one(tmp_path):
+    """The container's parallel mode: both step with what the other gave at the begin of the step."""
+    for model in PANTOGRAPH, CATENARY:
+        shutil.copy(installed_fmu(model), tmp_path)
+    (tmp_path / "line.csv").write_text(CONTAINER)
+    step, speed = 1e-3, np.minimum(60.0, np.arange(600.0))
+    command = [Path(sys.executable).with_name("fmucontainer"), "-fmu-directory", tmp_path]
+    run_tool(*command, "-container", f"line.csv:{step}", "-no-auto-input", "-no-auto-output", folder=tmp_path)
+    table = np.zeros(len(speed) + 1, dtype=[("time", float), ("speed", float)])
+    table["time"], table["speed"][:-1] = step * np.arange(len(table)), speed
+    result = simulate_fmu(
+        str(tmp_path / "line.fmu"),
+        stop_time=step * len(speed),
+        step_size=step,
+        output_interval=step,
+        input=table,
+    )
+    found = np.column_stack([result["force"], result["height"]])[1:]
+
+    expected = []
+    with Fmu(installed_fmu(CATENARY)) as wire, Fmu(installed_fmu(PANTOGRAPH)) as head:
+        with wire.instances() as (line,), head.instances() as (pantograph,):
+            line.start({"line.spans": 4, "pantograph[1].start": 60.0})
+            (height,) = line.get(["pantograph[1].wire_height"])
+            pantograph.start({"drive": 3}, {"wire_height": height})
+            (force,) = pantograph.get(["contact.force"])
+            for n, v in enumerate(speed):
+                line.set({"pantograph[1].force": force, "pantograph[1].speed": float(v)})
+                pantograph.set({"wire_height": height})
+                line.step(n * step, step)
+                pantograph.step(n * step, step)
+                (height,), (force,) = line.get(["pantograph[1].wire_height"]), pantograph.get(["contact.force"])
+                expected.append((force, height))
+    assert np.ptp(expected, axis=0) == pytest.approx([np.ptp(found[:, 0]), np.ptp(found[:, 1])])
+    np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9)

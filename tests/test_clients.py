@@ -1,0 +1,132 @@
+"""Other people's tools that are quick to install: they check the FMUs, and run them to the same results as our own
+driver, communication step by communication step. More of them in release/test_more_clients.py.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import read_model_description, simulate_fmu
+from pathsim import Connection, Simulation
+from pathsim.blocks import Scope, Source
+from pathsim_fmi import CoSimulationFMU
+from zspring.fmu import installed_fmu
+
+from client_runs import RUNS, Run
+
+each_run = pytest.mark.parametrize("run", RUNS.values(), ids=RUNS)
+
+
+@each_run
+def test_fmpy_simulates(run: Run):
+    names = list(run.inputs)
+    table = np.zeros(len(run.time) + 1, dtype=[("time", float)] + [(name, float) for name in names])
+    table["time"] = run.step * np.arange(len(table))
+    for name in names:
+        table[name][:-1] = run.inputs[name]
+    result = simulate_fmu(
+        run.path,
+        stop_time=len(run.time) * run.step,
+        step_size=run.step,
+        output_interval=run.step,
+        start_values=dict(run.parameters),
+        input=table,
+        output=list(run.outputs),
+    )
+    run.check(np.column_stack([result[name][1:] for name in run.outputs]))
+
+
+def fmutool(*arguments: str) -> str:
+    """Output of the command of fmu-manipulation-toolbox."""
+    command = [Path(sys.executable).with_name("fmutool"), *arguments]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+def test_fmutool_finds_nothing_to_complain_of(any_fmu):
+    said = fmutool("-input", str(any_fmu.path), "-check")
+    assert "compliant with FMI-2.0" in said and "No semantic error" in said
+    assert "WARNING" not in said and "ERROR" not in said
+
+
+def real_outputs_only(path: str, folder: Path) -> str:
+    """A copy of an FMU without its Integer and Boolean outputs, made by fmutool."""
+    variables = read_model_description(path).modelVariables
+    others = [re.escape(v.name) for v in variables if v.causality == "output" and v.type != "Real"]
+    folder.mkdir()
+    copy = str(folder / Path(path).name)
+    fmutool("-input", path, "-output", copy, "-remove-regexp", f"({'|'.join(others)})$")
+    return copy
+
+
+def plain(run: Run, folder: Path) -> str:
+    """A copy of an FMU whose enumerations are Integers, for tools that cannot set enumerations."""
+    subprocess.run([Path(sys.executable).with_name("zspring"), "export", "--plain", folder], check=True)
+    return str(folder / f"{run.model}.fmu")
+
+
+@each_run
+def test_pathsim_simulates(run: Run, tmp_path):
+    """A block diagram in Python: a source for each input, a scope on the outputs.
+
+    pathsim-fmi cannot set enumerations and reads all outputs as Reals.
+    """
+    path = real_outputs_only(plain(run, tmp_path), tmp_path / "real")
+    block = CoSimulationFMU(path, start_values=dict(run.parameters), dt=run.step)
+    scope = Scope()
+    blocks, connections = [block, scope], []
+    for name, values in run.inputs.items():
+        source = Source(lambda t, values=values: values[min(round(t / run.step), len(values) - 1)])
+        blocks.append(source)
+        connections.append(Connection(source, block[name]))
+    for n, name in enumerate(run.outputs):
+        connections.append(Connection(block[name], scope[n]))
+    simulation = Simulation(blocks, connections, dt=run.step, log=False)
+    simulation.run((len(run.time) - 1) * run.step)
+    _, columns = scope.read()
+    run.check(np.array(columns).T)
+
+
+@each_run
+def test_libcosim_simulates(run: Run, tmp_path):
+    """The engine of the Open Simulation Platform; it cannot set enumerations. Wheels for x86-64 only."""
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimManipulator import CosimManipulator
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    log_output_level(CosimLogLevel.ERROR)
+    execution = CosimExecution.from_step_size(round(run.step * 1e9))
+    slave = CosimLocalSlave(fmu_path=plain(run, tmp_path), instance_name="model")
+    index = execution.add_local_slave(slave)
+    references = {v.name.decode(): v.reference for v in execution.slave_variables(index)}
+    for name, value in run.parameters.items():
+        setter = execution.real_initial_value if isinstance(value, float) else execution.integer_initial_value
+        assert setter(index, references[name], value)
+    manipulator, observer = CosimManipulator.create_override(), CosimObserver.create_last_value()
+    execution.add_manipulator(manipulator)
+    execution.add_observer(observer)
+    inputs, outputs = ([references[name] for name in names] for names in (run.inputs, run.outputs))
+    rows = []
+    for values in zip(*run.inputs.values()):
+        manipulator.slave_real_values(index, inputs, [float(value) for value in values])
+        execution.step()  # in versions for Python 3.10 it returns False whatever happens
+        rows.append(observer.last_real_values(index, outputs))
+    assert execution.status().current_time == round(run.step * 1e9) * len(run.time)
+    run.check(np.array(rows))
+
+
+def test_exported_fmus_are_those_of_the_package(tmp_path):
+    command = [Path(sys.executable).with_name("zspring"), "export", tmp_path / "new" / "folder"]
+    subprocess.run(command, check=True)
+    copies = sorted((tmp_path / "new" / "folder").iterdir())
+    assert [copy.name for copy in copies] == ["Catenary.fmu", "ZSpringPantograph.fmu"]
+    for copy in copies:
+        assert copy.read_bytes() == installed_fmu(copy.stem).read_bytes()
