@@ -17,6 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 LICENSES = ROOT / "resources" / "licenses"
+STYLE = ROOT / "resources" / "documentation.css"
 
 # In the order of the documentation: (causality, heading)
 CAUSALITIES = [
@@ -106,6 +107,7 @@ def documentation(model_description: Path, resources: Path) -> str:
     model = ET.parse(model_description).getroot()
     template = string.Template((resources / "documentation.html").read_text("utf-8"))
     return template.substitute(
+        style=STYLE.read_text("utf-8"),
         version=html.escape(model.get("version")),
         variables=variable_tables(model),
         enumerations=enumeration_tables(model),

@@ -8,7 +8,7 @@ forces T0 balance. Which droppers hang loose is one linear complementarity probl
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import cholesky, lapack
@@ -257,3 +257,23 @@ def parameters_of(line: Line) -> dict[str, float]:
         "gravity": line.gravity,
         "mesh.element": line.element,
     }
+
+
+# As published, second-hand; the steady arms, which the sources at hand do not tell, are left out.
+EN_50318_2002 = Line(clamp_contact=0.165, clamp_messenger=0.195, damping_mass=0.0125, damping_stiffness=1e-4)
+BENCHMARK_2015 = Line(
+    span=55.0,
+    dropper_position=(4.5, 10.25, 16.0, 21.75, 27.5, 33.25, 39.0, 44.75, 50.5),
+    dropper_sag=(0.0, 0.024, 0.041, 0.052, 0.055, 0.052, 0.041, 0.024, 0.0),
+    dropper_EA=200e3,
+    dropper_mass=0.117,
+    clamp_contact=0.165,
+    clamp_messenger=0.195,
+    contact_wire=(1.35, 22e3, 195.0),
+    messenger=(1.08, 16e3, 131.7),
+    support_stiffness=5e5,
+    damping_mass=0.0125,
+    damping_stiffness=1e-4,
+)
+# Every part that a line can have.
+COMPLETE = replace(BENCHMARK_2015, spans=3, arm_mass=0.3, arm_stiffness=300.0)

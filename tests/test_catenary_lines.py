@@ -12,33 +12,14 @@ from zspring.fmu import CATENARY, installed_fmu
 from zspring.fmu import Fmu as ZSpringFmu
 from zspring.parameter_sets import describe_set, read_set
 
-from catenary_line import Line, parameters_of
+from catenary_line import BENCHMARK_2015, EN_50318_2002, parameters_of
 from harness import Fmu
 
 FILES = {
     path.stem: path
     for path in sorted(Path(str(importlib.resources.files("zspring") / "resources/lines")).glob("*.ssv"))
 }
-# As published, second-hand; both lines leave out what the sources at hand do not tell: the steady arms.
-PUBLISHED = {
-    "en-50318-2002": Line(
-        clamp_contact=0.165, clamp_messenger=0.195, damping_mass=0.0125, damping_stiffness=1e-4
-    ),
-    "benchmark-2015": Line(
-        span=55.0,
-        dropper_position=(4.5, 10.25, 16.0, 21.75, 27.5, 33.25, 39.0, 44.75, 50.5),
-        dropper_sag=(0.0, 0.024, 0.041, 0.052, 0.055, 0.052, 0.041, 0.024, 0.0),
-        dropper_EA=200e3,
-        dropper_mass=0.117,
-        clamp_contact=0.165,
-        clamp_messenger=0.195,
-        contact_wire=(1.35, 22e3, 195.0),
-        messenger=(1.08, 16e3, 131.7),
-        support_stiffness=5e5,
-        damping_mass=0.0125,
-        damping_stiffness=1e-4,
-    ),
-}
+PUBLISHED = {"en-50318-2002": EN_50318_2002, "benchmark-2015": BENCHMARK_2015}
 
 
 @pytest.fixture(scope="module")

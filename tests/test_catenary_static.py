@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2Discard, fmi2Error
 
-from catenary_line import Line, parameters_of
+from catenary_line import COMPLETE, Line, parameters_of
 from harness import Fmu, refusal
 
 G = 9.81
@@ -130,21 +130,7 @@ def test_one_dropper_joins_two_wires_in_parallel_until_it_slackens(catenary):
 
 LINES = {
     "EN 50318:2002": Line(spans=4),
-    "all parts": Line(
-        spans=3,
-        span=55.0,
-        dropper_position=(4.5, 10.25, 16, 21.75, 27.5, 33.25, 39, 44.75, 50.5),
-        dropper_sag=(0, 0.024, 0.041, 0.052, 0.055, 0.052, 0.041, 0.024, 0),
-        dropper_EA=200e3,
-        dropper_mass=0.117,
-        clamp_contact=0.165,
-        clamp_messenger=0.195,
-        contact_wire=(1.35, 22e3, 195.0),
-        messenger=(1.08, 16e3, 131.7),
-        support_stiffness=5e5,
-        arm_mass=0.3,
-        arm_stiffness=300.0,
-    ),
+    "all parts": COMPLETE,
     "soft and uneven": Line(
         spans=3,
         dropper_position=(3.2, 21.0, 40.7),

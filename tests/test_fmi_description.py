@@ -11,7 +11,6 @@ import zipfile
 from pathlib import Path
 from xml.etree import ElementTree
 
-import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2Error, fmi2OK
 from fmpy.model_description import ScalarVariable, read_model_description
