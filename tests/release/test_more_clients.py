@@ -1,4 +1,4 @@
-"""Other people's tools that take time or other languages to install: Java with Maven, Rust with cargo.
+"""Other people's tools that need more than Python: Java with Maven, Rust with cargo, libraries of the system.
 
 VDMCheck2 checks the model descriptions; the others run the FMUs to the same results as our own driver,
 communication step by communication step.
@@ -6,7 +6,6 @@ communication step by communication step.
 
 from __future__ import annotations
 
-import ctypes
 import csv
 import shutil
 import subprocess
@@ -21,18 +20,17 @@ from zspring.export import copy_without_enumerations
 from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
 
 from client_runs import RUNS, Run
+from release_tools import ROOT, tool
 
 each_run = pytest.mark.parametrize("run", RUNS.values(), ids=RUNS)
-TOOLS = Path(__file__).parents[2] / "build" / "clients"  # kept from one run to the next
+TOOLS = ROOT / "build" / "clients"  # kept from one run to the next
 
 VDMCHECK = "1.1.3"
 FMI_SIM = "0.7.0"
 
 
-def run_tool(*command: str | Path, folder: Path | None = None, hint: str = "") -> str:
-    """Output of a command; `hint` tells how to install it."""
-    if shutil.which(command[0]) is None:
-        pytest.fail(f"{command[0]} is not installed: {hint}", pytrace=False)
+def run_tool(*command: str | Path, folder: Path | None = None) -> str:
+    """Output of a command."""
     done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     assert done.returncode == 0, done.stdout
     return done.stdout
@@ -51,10 +49,9 @@ def vdmcheck() -> Path:
             f"<dependency>{dependency}<version>{VDMCHECK}</version></dependency></dependencies></project>"
         )
         run_tool(
-            *("mvn", "-q", "-B", "dependency:copy-dependencies"),
+            *(tool("mvn", "apt install maven"), "-q", "-B", "dependency:copy-dependencies"),
             *("-Dmdep.stripVersion=true", f"-DoutputDirectory={folder}"),
             folder=folder,
-            hint="it comes with Maven (Debian, Ubuntu: apt install maven)",
         )
         for jar in "vdmcheck2.jar", "static-model.jar", "rule-model.jar":  # the last one last: see above
             with zipfile.ZipFile(folder / jar) as archive:
@@ -63,7 +60,7 @@ def vdmcheck() -> Path:
 
 
 def vdmchecked(folder: Path, file: Path) -> str:
-    command = ["java", "-cp", "vdmcheck2.jar", "VDMCheckPlus", file]
+    command = [tool("java", "apt install default-jre"), "-cp", "vdmcheck2.jar", "VDMCheckPlus", file]
     done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     return done.stdout
 
@@ -88,8 +85,8 @@ def fmi_sim() -> Path:
     program = folder / "bin" / ("fmi-sim.exe" if sys.platform == "win32" else "fmi-sim")
     if not program.exists():
         run_tool(
-            *("cargo", "install", "--quiet", "--locked", "fmi-sim", "--version", FMI_SIM, "--root", folder),
-            hint="it comes with Rust (Debian, Ubuntu: apt install cargo, or rustup.rs)",
+            *(tool("cargo", "install Rust from rustup.rs"), "install", "--quiet", "--locked"),
+            *("fmi-sim", "--version", FMI_SIM, "--root", folder),
         )
     return program
 
@@ -110,27 +107,35 @@ def test_fmi_sim_simulates(fmi_sim: Path, run: Run, tmp_path):
 
 
 @each_run
-def test_ecos_simulates(run: Run, tmp_path):
-    """Ecos through ecospy; it cannot set enumerations."""
-    if sys.platform == "linux":  # ecospy links libtbb.so.12 and leaves it to the system; PyPI's tbb has it
-        ctypes.CDLL(f"{sys.prefix}/lib/libtbb.so.12", ctypes.RTLD_GLOBAL)
-    from ecospy import EcosSimulation, EcosSimulationStructure
+def test_libcosim_simulates(run: Run, tmp_path):
+    """The engine of the Open Simulation Platform; it cannot set enumerations. Wheels for x86-64."""
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimManipulator import CosimManipulator
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
 
     path = tmp_path / "model.fmu"
     with Fmu(installed_fmu(run.model)) as fmu:
         copy_without_enumerations(fmu, path)
+    log_output_level(CosimLogLevel.ERROR)
+    execution = CosimExecution.from_step_size(round(run.step * 1e9))
+    slave = CosimLocalSlave(fmu_path=str(path), instance_name="model")
+    index = execution.add_local_slave(slave)
+    references = {v.name.decode(): v.reference for v in execution.slave_variables(index)}
+    for name, value in run.parameters.items():
+        setter = execution.real_initial_value if isinstance(value, float) else execution.integer_initial_value
+        assert setter(index, references[name], value)
+    manipulator, observer = CosimManipulator.create_override(), CosimObserver.create_last_value()
+    execution.add_manipulator(manipulator)
+    execution.add_observer(observer)
+    inputs, outputs = ([references[name] for name in names] for names in (run.inputs, run.outputs))
     rows = []
-    with EcosSimulationStructure() as structure:
-        structure.add_model("model", path)
-        structure.add_parameter_set("start", {f"model::{k}": value for k, value in run.parameters.items()})
-        with EcosSimulation(structure=structure, step_size=run.step) as simulation:
-            simulation.init(parameter_set="start")
-            for values in zip(*run.inputs.values()):
-                for name, value in zip(run.inputs, values):
-                    simulation.set_real(f"model::{name}", float(value))
-                simulation.step()
-                rows.append([simulation.get_real(f"model::{name}") for name in run.outputs])
-            simulation.terminate()
+    for values in zip(*run.inputs.values()):
+        manipulator.slave_real_values(index, inputs, [float(value) for value in values])
+        execution.step()  # in versions for Python 3.10 it returns False whatever happens
+        rows.append(observer.last_real_values(index, outputs))
+    assert execution.status().current_time == round(run.step * 1e9) * len(run.time)
     run.check(np.array(rows))
 
 
