@@ -7,6 +7,8 @@ MODEL_RESOURCES is the folder of documentation.html, a template for the tables, 
 The same content gives the same bytes: entries are sorted and carry a fixed time.
 """
 
+from __future__ import annotations
+
 import argparse
 import html
 import os
@@ -14,6 +16,8 @@ import string
 import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
+
+from source_form import list_sources
 
 ROOT = Path(__file__).resolve().parent.parent
 LICENSES = ROOT / "resources" / "licenses"
@@ -114,16 +118,30 @@ def documentation(model_description: Path, resources: Path) -> str:
     )
 
 
-def write_fmu(model_description: Path, resources: Path, fmu: Path, libraries: dict[str, Path]) -> None:
-    """Write the FMU; `libraries` maps FMI platform names to shared libraries. Never leaves half a file."""
+def write_fmu(
+    model_description: Path,
+    resources: Path,
+    fmu: Path,
+    libraries: dict[str, Path],
+    sources: dict[str, bytes] | None = None,
+) -> None:
+    """Write the FMU. Never leaves half a file.
+
+    libraries   shared libraries by FMI platform name
+    sources     files of the folder sources/ by their path in it, where the FMU is to have its source form
+    """
+    sources = sources or {}
+    description = model_description.read_bytes()
     entries = {
-        "modelDescription.xml": model_description.read_bytes(),
+        "modelDescription.xml": list_sources(description, sources) if sources else description,
         "model.png": (resources / "model.png").read_bytes(),
         "documentation/index.html": documentation(model_description, resources).encode(),
         "documentation/licenses/license.txt": licenses().encode(),
     }
     for platform, library in libraries.items():
         entries[f"binaries/{platform}/{library.name}"] = library.read_bytes()
+    for path, content in sources.items():
+        entries[f"sources/{path}"] = content
 
     unfinished = fmu.with_name(fmu.name + ".part")
     with zipfile.ZipFile(unfinished, "w") as archive:

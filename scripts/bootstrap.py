@@ -1,9 +1,9 @@
-"""Set-up shared by scripts/frf and scripts/test: the built package in the virtual environment .venv.
+"""Set-up shared by the commands beside this file: the built package in the virtual environment .venv.
 
 Done in stages, each repeated when what it depends on has changed: the environment with the dependencies of
-pyproject.toml, the package zspring with its FMU; for the tests also all extras of pyproject.toml, the
-C++ probes and a headless browser. A stage is struck from the stamp file before it starts and written there
-when it is complete, so an interruption costs that stage only.
+pyproject.toml, the package zspring with its FMUs; for the tests also all extras of pyproject.toml, the C++
+probes and a headless browser; for a release its dependency groups. A stage is struck from the stamp file before it
+starts and written there when it is complete, so an interruption costs that stage only.
 Needs nothing but the standard library.
 """
 
@@ -17,6 +17,8 @@ import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from setup_tools import Runner, SetupError, lock, say, system_compiler
@@ -142,6 +144,11 @@ def install_extras(runner: Runner, _compiler: str) -> None:
     install_requirements(runner, "extras")
 
 
+def install_group(group: str, runner: Runner, _compiler: str) -> None:
+    say(f"installing the dependency group {group} (up to three minutes)")
+    install_requirements(runner, group)
+
+
 def python_identity() -> str:
     return f"{sys.version_info[0]}.{sys.version_info[1]} {VENV}"
 
@@ -191,7 +198,7 @@ def install_browser(runner: Runner, _compiler: str) -> None:
                PATH=os.pathsep.join([str(BIN), os.environ.get("PATH", "")]))  # .venv's node before any other
 
 
-def set_up(with_probes: bool) -> None:
+def set_up(with_probes: bool, groups: Sequence[str]) -> None:
     """Bring .venv and the builds up to date; returns at once where they are."""
     wanted = {
         "python": python_identity(),
@@ -202,6 +209,8 @@ def set_up(with_probes: bool) -> None:
         wanted["extras"] = wanted["requirements"]
         wanted["probes"] = fingerprint(*PROBE_SOURCES)
         wanted["browser"] = fingerprint("tests/browser/package.json")
+    for group in groups:
+        wanted[group] = wanted["requirements"]
 
     def outdated(stage: str) -> bool:
         return stamp.get(stage) != wanted[stage]
@@ -222,6 +231,7 @@ def set_up(with_probes: bool) -> None:
             note_dependencies(stamp)
         stages = {"extras": install_extras, "package": build_package, "probes": build_probes,
                   "browser": install_browser}
+        stages |= {group: partial(install_group, group) for group in groups}
         for stage, build in stages.items():
             if stage in wanted and outdated(stage):
                 stamp.pop(stage, None)
@@ -232,13 +242,16 @@ def set_up(with_probes: bool) -> None:
         say(f"ready after {time.monotonic() - begin:.0f} s")
 
 
-def run(command: list[str], with_probes: bool = False, folder: Path | None = None) -> None:
+def run(
+    command: list[str], with_probes: bool = False, groups: Sequence[str] = (), folder: Path | None = None
+) -> None:
     """Set up, then become `command`, whose first item is a program of .venv; `folder` is where to start it.
 
-    With probes it finds the folder of the C++ test programs in the environment variable ZSPRING_PROBES.
+    With probes it finds the folder of the C++ test programs in the environment variable ZSPRING_PROBES. `groups`
+    are dependency groups of pyproject.toml to install as well.
     """
     try:
-        set_up(with_probes)
+        set_up(with_probes, groups)
     except (SetupError, OSError) as error:
         sys.exit(f"set-up: {error}")
     except KeyboardInterrupt:

@@ -1,0 +1,66 @@
+"""Makes the release and runs both test suites on it; scripts/release_check starts it in .venv.
+
+    scripts/release_check [pytest's arguments]
+
+The tests find the package of the release's wheel, with the release FMUs, instead of the one built in this clone.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ET
+from collections import defaultdict
+from pathlib import Path
+
+from bootstrap import BUILD, PYTHON, ROOT
+
+INSTALLED = BUILD / "release" / "installed"
+REPORT = BUILD / "release" / "tests.xml"
+BOTH_SUITES = ["--override-ini=norecursedirs=node_modules", "tests"]  # pyproject.toml leaves out tests/release
+
+
+def run(*command: str | Path, **variables: str) -> int:
+    return subprocess.run([str(part) for part in command], cwd=ROOT, env={**os.environ, **variables}).returncode
+
+
+def table(rows: list[tuple[str, int, int, float]]) -> str:
+    """Lines of: what was checked, passed, failed, seconds."""
+    lines = [f"{'release check':40} {'passed':>7} {'failed':>7} {'seconds':>8}"]
+    lines += [f"{name:40} {good:7} {bad:7} {seconds:8.1f}" for name, good, bad, seconds in rows]
+    return "\n".join(lines)
+
+
+def test_rows() -> list[tuple[str, int, int, float]]:
+    """One row for each file of tests in pytest's report."""
+    rows = defaultdict(lambda: [0, 0, 0.0])
+    for case in ET.parse(REPORT).iter("testcase"):
+        row = rows[(case.get("classname") or case.get("name")).replace(".", "/")]
+        failed = any(child.tag in ("failure", "error", "skipped") for child in case)
+        row[1 if failed else 0] += 1
+        row[2] += float(case.get("time"))
+    return [(name, *rows[name]) for name in sorted(rows)]
+
+
+def main() -> int:
+    begin = time.monotonic()
+    packaged = run(PYTHON, "scripts/release.py") == 0
+    rows = [("scripts/package", int(packaged), int(not packaged), time.monotonic() - begin)]
+    if packaged:
+        (wheel,) = (ROOT / "dist").glob("*.whl")
+        run(PYTHON, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--upgrade",
+            "--target", INSTALLED, wheel)
+        arguments = sys.argv[1:]
+        if not any((ROOT / argument.partition("::")[0]).exists() for argument in arguments):
+            arguments += BOTH_SUITES
+        REPORT.unlink(missing_ok=True)
+        run(PYTHON, "-m", "pytest", f"--junitxml={REPORT}", *arguments, PYTHONPATH=str(INSTALLED))
+        rows += test_rows() if REPORT.exists() else [("tests", 0, 1, 0.0)]
+    print(table([*rows, ("all", *(sum(column) for column in list(zip(*rows))[1:]))]))
+    return int(any(failed for _, _, failed, _ in rows))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
