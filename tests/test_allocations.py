@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import fmpy
 import pytest
 from core import probe_folder
 from zspring.fmu import CATENARY, Fmu, installed_fmu
@@ -13,7 +14,8 @@ if sys.platform == "linux":  # counting replaces glibc's malloc
 
     def count(fmu: Fmu, integers: dict[str, int], reals: dict[str, float]) -> tuple[int, int]:
         """Allocations in 500 steps of 11 ms and in the instantiation."""
-        (library,) = (fmu.folder / "binaries").glob("*/*.so")
+        (library,) = (file for name in {fmpy.platform, fmpy.platform_tuple}
+                  for file in (fmu.folder / "binaries" / name).glob("*.so"))
         settings = [f"{kind}{fmu.variables[name].valueReference}={value}"
                     for kind, values in (("i", integers), ("r", reals)) for name, value in values.items()]
         command = [probe_folder() / "count_allocations", library, fmu.description.guid, "0.011", "500", *settings]

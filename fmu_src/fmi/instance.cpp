@@ -69,6 +69,7 @@ void Instance::setup_experiment(const Experiment& e) {
   if (e.has_stop && !(e.stop >= e.start))
     refuse("stopTime = %.10g s: must not be before startTime = %.10g s", e.stop, e.start);
   experiment_ = e;
+  if (std::isinf(e.stop)) experiment_.has_stop = false, experiment_.stop = 0;
   time_ = e.start;
 }
 
@@ -283,7 +284,7 @@ void Instance::restore(const std::vector<double>& numbers) {
   read(has_simulation);
   outputs_.reset();
   // Hosts that iterate restore at every step: a model of the same parameters is kept, only its state is replaced.
-  if (!has_simulation || !is_model_of(parameters_)) simulation_.reset();
+  if (!has_simulation || (simulation_ && !is_model_of(parameters_))) simulation_.reset();
   if (has_simulation) simulation().visit_state(read);
   if (read.in != read.end) throw Refusal("FMU state: goes on after its last value");
 }
@@ -297,7 +298,7 @@ void Instance::check_state(const std::vector<double>& numbers) {
     if (trial.phase & (StepComplete | StepFailed | Terminated)) throw Refusal("FMU state: lacks its simulation");
     return;
   }
-  if (!trial.simulation_->is_possible())
+  if (!trial.simulation_->is_possible() || !all_finite(trial.simulation_->outputs()))
     throw Refusal("FMU state: holds numbers that no simulation leaves behind");
 }
 

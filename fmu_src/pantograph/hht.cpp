@@ -162,12 +162,15 @@ Vector5 Hht::old_load(const MechanicalState& from, const Boundary& b0) const {
   return R;
 }
 
-// The size of the forces that a step balances, N and N m. The last term lifts the tolerance above rounding for
-// very stiff springs.
+// The size of the forces that a step balances, N and N m. An imposed head balances none: where the position jumps,
+// its reaction may be far larger than all others. The last term lifts the tolerance above rounding for very stiff
+// springs.
 Vector5 Hht::residual_scale(const MechanicalState& from) const {
   const ZSpringParameters& z = m_.parameters.zspring;
-  const double force = m_.load + std::abs(from.contact_force) + from.internal.cwiseAbs().maxCoeff() +
-                       m_.mass.cwiseProduct(from.a).cwiseAbs().maxCoeff() + 1e-6 * z.k * z.d;
+  Vector5 inertia = m_.mass.cwiseProduct(from.a);
+  if (head_imposed()) inertia[U1] = 0;
+  const double force = m_.load + (head_imposed() ? 0 : std::abs(from.contact_force)) +
+                       from.internal.cwiseAbs().maxCoeff() + inertia.cwiseAbs().maxCoeff() + 1e-6 * z.k * z.d;
   Vector5 scale;
   scale << force, force * z.L1, force * z.L2, force, force;
   return scale;

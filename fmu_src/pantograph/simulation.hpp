@@ -60,6 +60,7 @@ class Simulation {
   bool is_possible() const;
 
  private:
+  bool is_finite() const;
   MechanicalState at_rest(const Inputs& inputs) const;
   Boundary initial_boundary(const Inputs& inputs) const;
   // Drives `state` through a communication step; on_step(from, to, b0, b1, h) sees each accepted internal step.

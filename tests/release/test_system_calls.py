@@ -1,0 +1,30 @@
+"""While an FMU runs, the system sees it ask for memory and nothing else."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+
+import pytest
+from endurance import command
+from release_tools import tool
+from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
+
+MEMORY = {"mmap", "munmap", "mremap", "brk", "mprotect", "madvise"}
+OF_THE_PROGRAM = {"clock_gettime"}  # where the system has no faster way to tell the time
+
+
+@pytest.mark.parametrize("model", [PANTOGRAPH, CATENARY])
+def test_a_running_fmu_asks_the_system_for_memory_only(model, tmp_path):
+    trace = tmp_path / "trace"
+    with Fmu(installed_fmu(model)) as fmu:
+        run = command(fmu, "latency", 1000)  # prints at its end, and does nothing else beside calling the FMU
+        done = subprocess.run([tool("strace", "apt install strace"), "-f", "-o", trace, *run], capture_output=True)
+    assert done.returncode == 0, done.stderr
+    calls = trace.read_text().splitlines()
+    opened = next(i for i, line in enumerate(calls) if f"{model}.so" in line and "open" in line)
+    mapped = next(i for i in range(opened, len(calls)) if " close(" in calls[i])
+    end = next(i for i in range(mapped, len(calls)) if re.search(r" (newfstatat|fstat|write)\(1,", calls[i]))
+    names = {re.match(r"\d+\s+(\w+)", line)[1] for line in calls[mapped + 1 : end]}
+    assert "brk" in names  # so reading works
+    assert names <= MEMORY | OF_THE_PROGRAM

@@ -1,0 +1,42 @@
+"""Any sequence of FMI calls, any bytes as a state: judged call by call in C++ against a small model of the rules.
+
+tests/native/fuzz judges; here it replays what once was a fault and runs some random sequences. Longer, with
+sanitizers and with libFuzzer: tests/release/test_sanitizers.py.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from core import probe_folder
+
+CORPUS = sorted((Path(__file__).parent / "native" / "corpus").iterdir())
+
+
+def fuzz(model: str, *arguments: object) -> dict[str, int]:
+    """What was done: calls, refused, steps, discarded, states, foreign, replays."""
+    command = [str(probe_folder() / f"fuzz_{model}"), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
+    return {name: int(count) for name, count in re.findall(r"(\w+) (\d+)", done.stdout)}
+
+
+@pytest.mark.parametrize("model", ["ZSpringPantograph", "Catenary"])
+def test_what_once_was_a_fault_is_none_any_more(model):
+    assert fuzz(model, *CORPUS)["calls"] > 100
+
+
+@pytest.mark.parametrize("model, sequences", [("ZSpringPantograph", 3000), ("Catenary", 600)])
+def test_random_sequences_of_calls_break_no_rule(model, sequences):
+    done = fuzz(model, "--random", 1, sequences)
+    assert done["calls"] > 100 * sequences
+    for kind in ("refused", "steps", "discarded", "states", "foreign", "replays"):
+        assert done[kind] > 0.05 * sequences, kind
+
+
+@pytest.mark.parametrize("model", ["ZSpringPantograph", "Catenary"])
+def test_eight_threads_with_their_own_instances_break_no_rule(model):
+    assert fuzz(model, "--random", 100_000, 20, 8)["calls"] > 100 * 160
