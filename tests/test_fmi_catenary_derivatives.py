@@ -1,4 +1,4 @@
-"""Derivatives that the catenary gives, of a step with respect to inputs and of outputs in time, against differences."""
+"""Derivatives of the catenary, of a step with respect to inputs and of outputs in time, against differences."""
 
 from __future__ import annotations
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2LastSuccessfulTime
 
-from harness import Signal
 from models import each_case, each_case_but
 
 OUTPUTS = ["head.z", "head.v", "contact.force", "upper_frame.z", "lower_frame.z", "zspring.alpha"]

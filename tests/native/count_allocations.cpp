@@ -1,8 +1,8 @@
 // Counts heap allocations inside fmi2DoStep of a built FMU.
 //
-//   count_allocations LIBRARY GUID STEP COUNT [rVR=VALUE | iVR=VALUE ...]   sets Reals and Integers (enumerations), then
-//   runs COUNT steps of STEP s and prints the allocations in all fmi2DoStep calls and, to show that counting works, in one
-//   fmi2Instantiate.
+//   count_allocations LIBRARY GUID STEP COUNT [rVR=VALUE | iVR=VALUE ...]   sets Reals and Integers (enumerations),
+//   then runs COUNT steps of STEP s and prints the allocations in all fmi2DoStep calls and, to show that counting
+//   works, in one fmi2Instantiate.
 #include <dlfcn.h>
 
 #include <cstdio>

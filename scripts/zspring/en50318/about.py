@@ -33,8 +33,9 @@ def own_runs() -> Chapter:
         "are second-hand, as papers and codes quote them, and that edition is superseded; where they leave a "
         "choice, published values were chosen knowing the ranges, so that figures inside are no validation. "
         "Those of EN 50318:2018 are not public and have to be put in by the user. No line test and no measured "
-        "pantograph is compared. The line is planar (no stagger, no lateral motion) with small displacements, the pantograph a few lumped "
-        "masses: results hold for 0 to 20 Hz. The Z-spring's parameters are synthetic."
+        "pantograph is compared. The line is planar (no stagger, no lateral motion) with small displacements, "
+        "the pantograph a few lumped masses: results hold for 0 to 20 Hz. The Z-spring's parameters are "
+        "synthetic."
     )
     return Chapter(TITLE, [shows, f"{not_shown} {NO_CERTIFICATE}"])
 
