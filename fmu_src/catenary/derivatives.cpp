@@ -63,17 +63,17 @@ Outputs Simulation::output_rates() const {
 
 Outputs Simulation::outputs_change(const Inputs& direction) {
   if (length_ == 0) {
-    LineState placed;
+    Passage changed[pantographs];
     Loads dloads = loads_at(line_.mesh, state_.passage);
     for (int i = 0; i < pantographs; ++i) {
-      placed.passage[i] = initial_passage(line_.p, i, direction.pantograph[i]);
-      if (line_.p.travel == Travel::Speed) placed.passage[i].position = 0;  // a parameter
+      changed[i] = initial_passage(line_.p, i, direction.pantograph[i]);
+      if (line_.p.travel == Travel::Speed) changed[i].position = 0;  // a parameter
       const Place& place = dloads.on[i].place;
-      dloads.on[i].value = placed.passage[i].force * place.value +
-                           state_.passage[i].force * placed.passage[i].position * place.slope;
+      dloads.on[i].value =
+          changed[i].force * place.value + state_.passage[i].force * changed[i].position * place.slope;
     }
     LineState d = hht_.at_rest_variation(dloads, state_.slack);
-    std::copy_n(placed.passage, pantographs, d.passage);
+    std::copy_n(changed, pantographs, d.passage);
     d.elastic = loads_at(line_.mesh, state_.passage).dot(d.u);
     return change(d);
   }

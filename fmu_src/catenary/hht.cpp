@@ -78,12 +78,22 @@ BlockCholesky Hht::static_factor() const {
   return BlockCholesky(stiffness);
 }
 
+LineState Hht::at_rest_if_taut(const BlockCholesky& factor, const Loads& loads) const {
+  LineState s;
+  s.u = s.v = s.a = s.a_slope = s.internal = s.damping = VectorXd::Zero(line_.mesh.dofs());
+  s.slack = VectorXd::Zero(trial_.size());
+  loads.add_to(s.u, 1);
+  factor.solve(s.u);
+  return s;
+}
+
 LineState Hht::at_rest(const Loads& loads) {
-  LineState s = at_rest_variation(loads, {});
+  const BlockCholesky factor = static_factor();
+  LineState s = at_rest_if_taut(factor, loads);
   trial_forces(s.u, s.a, 0);
   trial_ += line_.shape.tension;
   if (trial_.size() > 0 && trial_.minCoeff() < 0) {
-    const DropperResponse response(line_.mesh, static_factor(), 1);
+    const DropperResponse response(line_.mesh, factor, 1);
     if (slackening_.solve(trial_, response.compliance(), s.slack) < 0)
       throw ParameterError("no equilibrium of the line under the initial contact forces was found");
     add_slack(response, 1, s.slack, s.u);
@@ -95,12 +105,8 @@ LineState Hht::at_rest(const Loads& loads) {
 }
 
 LineState Hht::at_rest_variation(const Loads& dloads, const VectorXd& slack) {
-  LineState d;
-  d.u = d.v = d.a = d.a_slope = d.internal = d.damping = VectorXd::Zero(line_.mesh.dofs());
-  d.slack = VectorXd::Zero(trial_.size());
   const BlockCholesky factor = static_factor();
-  dloads.add_to(d.u, 1);
-  factor.solve(d.u);
+  LineState d = at_rest_if_taut(factor, dloads);
   if (slack.size() > 0 && slack.maxCoeff() > 0) {
     const DropperResponse response(line_.mesh, factor, 1);
     trial_forces(d.u, d.a, 0);

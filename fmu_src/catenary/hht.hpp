@@ -47,6 +47,7 @@ class Hht {
 
  private:
   BlockCholesky static_factor() const;
+  LineState at_rest_if_taut(const BlockCholesky& factor, const Loads& loads) const;  // no dropper slack
   void add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const;
   void predict(const StepFactors& f, const Loads& l1, LineState& s);
   void correct(const StepFactors& f, LineState& s);

@@ -24,14 +24,13 @@ namespace {
 Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : line_(parameters), hht_(line_) {
   facts_.length = line_.mesh.length();
   facts_.dropper_force_min = line_.shape.tension.size() > 0 ? line_.shape.tension.minCoeff() : 0;
-  LineState placed;
+  Passage placed[pantographs];
   for (int i = 0; i < pantographs; ++i) {
-    placed.passage[i] = initial_passage(line_.p, i, inputs.pantograph[i]);
-    const Passage& at = placed.passage[i];
+    const Passage& at = placed[i] = initial_passage(line_.p, i, inputs.pantograph[i]);
     if (at.force != 0 && !line_.mesh.contains(at.position)) refuse_start(line_.p, i, at, facts_.length);
   }
-  state_ = hht_.at_rest(loads_at(line_.mesh, placed.passage));
-  std::copy_n(placed.passage, pantographs, state_.passage);
+  state_ = hht_.at_rest(loads_at(line_.mesh, placed));
+  std::copy_n(placed, pantographs, state_.passage);
   before_ = next_ = state_;
   held_ = inputs;
   if (!all_finite(outputs())) throw ParameterError(overflow);
