@@ -18,8 +18,10 @@ import click
 import numpy as np
 from core import probe_folder
 from tqdm import tqdm
+from zspring.couple.journey import Journey
 from zspring.couple.run import run_line
 from zspring.couple.schemes import Coupling
+from zspring.couple.system import System
 from zspring.fmu import CATENARY, Fmu, Instance, installed_fmu
 from zspring.frf.fixed_work import PERIODS, figure_points, run_points
 from zspring.frf.measure import FrfSettings
@@ -98,7 +100,8 @@ def line(pantograph: Fmu) -> None:
             print(f"{spans:<11}  {1e6 * min(taken):>24.1f}   {1e6 * min(taken) / spans:>6.2f}")
         print("coupling     times faster than real time")
         for scheme in ("explicit", "implicit"):
-            runs = [run_line(catenary, pantograph, {}, [{}], speed, coupling=Coupling(scheme)) for _ in range(ROUNDS)]
+            system = System(catenary, pantograph, {}, [{}], Journey(speed), Coupling(scheme))
+            runs = [run_line(system) for _ in range(ROUNDS)]
             print(f"{scheme:<11}  {runs[0].time[-1] / min(run.elapsed for run in runs):>27.1f}")
 
 

@@ -12,6 +12,7 @@ from zspring.couple.result import LineResult
 from zspring.couple.run import LineRun
 from zspring.couple.schemes import Coupling
 from zspring.couple.ssp import write_ssp
+from zspring.couple.system import System
 from zspring.fmu import CATENARY, Fmu, installed_fmu
 
 SPEED = 250 / 3.6
@@ -23,7 +24,8 @@ def archive(path: Path, count: int) -> Iterator[tuple[Path, LineResult]]:
     """Write an archive of so many pantographs; yields its path and the run."""
     journey = Journey(SPEED, 90.0, 150.0, 2e-3, 50.0, start_up="direct", uplift=15.0)
     with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
-        with LineRun(catenary, pantograph, LINE, [COULOMB] * count, journey, Coupling("jacobi")) as run:
+        system = System(catenary, pantograph, LINE, [COULOMB] * count, journey, Coupling("jacobi"))
+        with LineRun(system) as run:
             write_ssp(run, path)
             run.finish()
             yield path, run.result()

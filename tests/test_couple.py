@@ -12,6 +12,7 @@ from zspring.couple.mean_force import mean_force
 from zspring.couple.result import LineResult
 from zspring.couple.run import LineRun, run_line
 from zspring.couple.schemes import Coupling
+from zspring.couple.system import System
 from zspring.errors import ZSpringError
 from zspring.fmu import CATENARY, Fmu, installed_fmu
 from zspring.parameter_sets import find_set, read_set
@@ -46,8 +47,11 @@ def along(fmus, two_masses) -> Callable[..., LineResult]:
     """run_line on the short line with the two-mass pantograph, unless told otherwise."""
 
     def run(pantographs=None, line=None, **settings) -> LineResult:
-        settings = {"speed": SPEED, **EXTENT, **settings}
-        return run_line(*fmus, {**SHORT, **(line or {})}, pantographs or [two_masses], **settings)
+        coupling = settings.pop("coupling", Coupling())
+        journey = Journey(**{"speed": SPEED, **EXTENT, **settings})
+        return run_line(
+            System(*fmus, {**SHORT, **(line or {})}, pantographs or [two_masses], journey, coupling)
+        )
 
     return run
 
@@ -172,8 +176,8 @@ def test_errors_of_the_coupling_fall_with_the_step(fmus, two_masses):
     """Explicit coupling is of second order in the communication step and implicit coupling far more exact."""
 
     def run(step, coupling, of_line, of_pantograph):
-        journey = {**EXTENT, "step": step, "coupling": coupling}
-        return run_line(*fmus, SHORT | of_line, [two_masses | of_pantograph], SPEED, **journey)
+        journey = Journey(SPEED, **EXTENT, step=step)
+        return run_line(System(*fmus, SHORT | of_line, [two_masses | of_pantograph], journey, coupling))
 
     steps = (0.5e-3, 1e-3, 2e-3)
     rows = list(compare_steps(run, Coupling(), 30.0, steps))
@@ -212,7 +216,7 @@ def test_a_tighter_line_rises_less(along, two_masses):
 def test_two_steps_of_the_catenary_do_for_an_implicit_step(fmus, pantograph, drive):
     """Friction, loss of contact and slack droppers seldom take a third one."""
     journey = Journey(300 / 3.6, **EXTENT)
-    with LineRun(*fmus, SHORT, [pantograph], journey, Coupling("implicit", drive)) as run:
+    with LineRun(System(*fmus, SHORT, [pantograph], journey, Coupling("implicit", drive))) as run:
         run.finish()
         assert run.wire_steps < 2.02
         assert run.result().slack_droppers.max() > 0
@@ -228,7 +232,7 @@ def test_mean_force_laws():
 def test_an_iteration_that_does_not_converge_is_told_and_keeps_what_was_done(fmus, two_masses):
     """One step of the catenary is not enough once the force changes; nothing unconverged is passed on."""
     coupling = Coupling(max_iterations=1)
-    with LineRun(*fmus, SHORT, [two_masses], Journey(SPEED, **EXTENT), coupling) as run:
+    with LineRun(System(*fmus, SHORT, [two_masses], Journey(SPEED, **EXTENT), coupling)) as run:
         with pytest.raises(ZSpringError, match=r"converge at 0\.\d+ s: after 1 iterations it is .* N off"):
             run.finish()
         rows = run.result()

@@ -16,6 +16,7 @@ from zspring.couple.journey import Journey
 from zspring.couple.result import read_result, write_result
 from zspring.couple.run import LineRun
 from zspring.couple.schemes import Coupling
+from zspring.couple.system import System
 from zspring.couple.tasks import run_and_write
 from zspring.errors import ZSpringError
 from zspring.fmu import CATENARY, Fmu, installed_fmu
@@ -67,9 +68,8 @@ def made() -> LineRun:
     """A run of two pantographs that ended early."""
     journey = Journey(60.0, 70.0, 100.0, 2e-3, 30.0)
     with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
-        with LineRun(
-            catenary, pantograph, {"line.spans": 3}, [{"zspring.Mf": 0.25}, {"zspring.Mf": 0.4}], journey
-        ) as run:
+        pair = [{"zspring.Mf": 0.25}, {"zspring.Mf": 0.4}]
+        with LineRun(System(catenary, pantograph, {"line.spans": 3}, pair, journey)) as run:
             run.finish()
             return run.result()
 
@@ -99,7 +99,7 @@ def test_a_file_of_something_else_is_refused(tmp_path):
 def test_ctrl_c_keeps_the_rows_so_far():
     with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
         fine = {"solver.step": 1e-4}
-        with LineRun(catenary, pantograph, fine, [fine], Journey(50.0, step=1e-4)) as run:
+        with LineRun(System(catenary, pantograph, fine, [fine], Journey(50.0, step=1e-4))) as run:
             threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
             with pytest.raises(Interrupted, match=r"interrupted at 0\.\d+ s"):
                 run.finish()
@@ -110,9 +110,9 @@ def test_ctrl_c_keeps_the_rows_so_far():
 
 def test_a_run_that_cannot_go_on_keeps_its_rows_in_the_file(tmp_path):
     with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
-        settings = (catenary, pantograph, {}, [{}], Journey(70.0), Coupling(max_iterations=1))
+        system = System(catenary, pantograph, {}, [{}], Journey(70.0), Coupling(max_iterations=1))
         with pytest.raises(ZSpringError, match=r"converge.*; the rows so far are kept in .*line\.csv"):
-            run_and_write(*settings, tmp_path, "png", parquet=False)
+            run_and_write(system, tmp_path, "png", parquet=False)
     assert len(read_result(tmp_path / "line.csv").time) >= 1
 
 

@@ -13,6 +13,7 @@ from ..parameter_sets import LINES
 from .journey import MASSES, START_UPS, Journey, parameter_value
 from .mean_force import STANDING, mean_force
 from .schemes import DRIVES, SCHEMES, Coupling
+from .system import System
 
 SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameters of the catenary
 
@@ -164,10 +165,10 @@ def couple(
         if supply:
             uplift = mean_force(supply, speed) - parameter_value(pantograph, parameters, "static_force")
         journey = Journey(speed / 3.6, start, stop, step, spacing, start_up, uplift or 0.0, uplift_on)
-        settings = (catenary, pantograph, line, [parameters] * count, journey, coupling)
+        system = System(catenary, pantograph, line, [parameters] * count, journey, coupling)
         if ssp_path:
-            tasks.export_ssp(*settings, ssp_path)
+            tasks.export_ssp(system, ssp_path)
         elif compare_steps:
-            tasks.compare_and_write(*settings, output, suffix)
+            tasks.compare_and_write(system, output, suffix)
         else:
-            tasks.run_and_write(*settings, output, suffix, parquet)
+            tasks.run_and_write(system, output, suffix, parquet)

@@ -4,52 +4,35 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from functools import cached_property
 
 from tqdm import tqdm
 
 from ..errors import ZSpringError
-from ..fmu import Fmu, Instance
+from ..fmu import Instance
 from ..interrupt import Interrupted, stop_on_interrupt
 from ..variables import Value, parse, with_unit
 from .calls import PreparedCalls
-from .journey import Journey, LineExtent, parameter_value
 from .record import Record
 from .result import LineResult
-from .schemes import Coupling, GaussSeidel, Implicit, Jacobi
+from .schemes import GaussSeidel, Implicit, Jacobi
 from .sides import ContactInMaster, ContactInPantograph, Wire
+from .system import System
 
 LOOK_EVERY = 50  # steps between two looks at Ctrl-C and the progress bar
 
 
-def run_line(
-    catenary: Fmu,
-    pantograph: Fmu,
-    line: Mapping[str, Value],
-    pantographs: Sequence[Mapping[str, Value]],
-    speed: float,
-    start: float | None = None,
-    stop: float | None = None,
-    step: float = 1e-3,
-    coupling: Coupling = Coupling(),
-    spacing: float = 0.0,
-    start_up: str = "ramp",
-    uplift: float = 0.0,
-    uplift_on: str = "upper_frame",
-    progress: bool = False,
-) -> LineResult:
-    """Run one or two pantographs along a line; see Journey and Coupling.
+def run_line(system: System, progress: bool = False) -> LineResult:
+    """Run the pantographs along the line.
 
-    line            parameters of the catenary
-    pantographs     parameters of each pantograph, the first one first
     progress        show a progress bar
     Raises ZSpringError for settings that do not fit the line, FmuError when an FMU refuses something, and
     Interrupted after Ctrl-C.
     """
-    journey = Journey(speed, start, stop, step, spacing, start_up, uplift, uplift_on)
-    with LineRun(catenary, pantograph, line, pantographs, journey, coupling) as run:
+    with LineRun(system) as run:
         run.finish(progress)
         return run.result()
 
@@ -57,24 +40,15 @@ def run_line(
 class LineRun:
     """A run that can end early: `result` has the rows so far. A context manager that frees the FMUs.
 
-    Arguments and errors as those of run_line.
+    Errors as those of run_line.
     """
 
-    def __init__(
-        self,
-        catenary: Fmu,
-        pantograph: Fmu,
-        line: Mapping[str, Value],
-        pantographs: Sequence[Mapping[str, Value]],
-        journey: Journey,
-        coupling: Coupling = Coupling(),
-    ):
-        self.catenary, self.pantograph, self.coupling = catenary, pantograph, coupling
-        self._line_given, self._given = line, pantographs
-        self.line = LineExtent.of(catenary, line)
-        self.journey = journey = self.line.complete(journey, len(pantographs))
+    def __init__(self, system: System):
+        self.line = system.extent
+        self.journey = journey = self.line.complete(system.journey, len(system.pantographs))
+        self.system = replace(system, journey=journey)
         self.steps = math.floor((journey.stop - journey.start) / (journey.speed * journey.step) + 1e-9)
-        self._static_forces = [parameter_value(pantograph, given, "static_force") for given in pantographs]
+        self._static_forces = system.of_each("static_force")
         self._done, self._elapsed = 0, 0.0
         self._stack = ExitStack()
         try:
@@ -85,18 +59,18 @@ class LineRun:
 
     def _start(self) -> None:
         """Both FMUs initialised, and the master's parts around them."""
-        journey, coupling, count = self.journey, self.coupling, len(self._given)
-        (wire,) = self._stack.enter_context(self.catenary.instances())
-        heads = self._stack.enter_context(self.pantograph.instances(count))
+        system, count = self.system, len(self.system.pantographs)
+        (wire,) = self._stack.enter_context(system.catenary.instances())
+        heads = self._stack.enter_context(system.pantograph.instances(count))
         for head, (parameters, inputs) in zip(heads, self.head_starts):
             head.start(parameters, inputs)
         wire.start(*self.wire_start)
-        self.settings = _settings(journey, coupling, self.catenary, wire, self.pantograph, heads)
+        self.settings = _settings(system, wire, heads)
 
         wire_calls, *head_calls = (self._stack.enter_context(PreparedCalls(i)) for i in (wire, *heads))
         self._wire = Wire(wire_calls, count)
         self.lifted = list(self._wire.heights)  # m, at the start by static_force
-        self._uplifts = [calls.reals([f"uplift.{journey.uplift_on}"]) for calls in head_calls]
+        self._uplifts = [calls.reals([f"uplift.{self.journey.uplift_on}"]) for calls in head_calls]
         self._scheme = self._make_scheme(head_calls)
         self._record = Record(self.steps + 1, wire_calls, head_calls, self.line.supports)
         self._record.take(0, self._shifts(0.0))
@@ -105,19 +79,19 @@ class LineRun:
     def head_starts(self) -> list[tuple[dict[str, Value], dict[str, float]]]:
         """Parameters and first inputs of each pantograph."""
         uplift = self.journey.uplift if self.journey.start_up == "direct" else 0.0
-        drive = parse(self.pantograph.variables["drive"], self.coupling.drive)
+        drive = parse(self.system.pantograph.variables["drive"], self.system.coupling.drive)
         return [
             (
                 {**parameters, "drive": drive},
                 {"contact_force": force, f"uplift.{self.journey.uplift_on}": uplift},
             )
-            for parameters, force in zip(self._given, self._static_forces)
+            for parameters, force in zip(self.system.pantographs, self._static_forces)
         ]
 
     @cached_property
     def wire_start(self) -> tuple[dict[str, Value], dict[str, float]]:
         """Parameters and first inputs of the catenary."""
-        parameters, inputs = dict(self._line_given), {}
+        parameters, inputs = dict(self.system.line), {}
         for i, force in enumerate(self._static_forces):
             name = f"pantograph[{i + 1}]"
             parameters[f"{name}.start"] = self.journey.start - i * self.journey.spacing
@@ -125,14 +99,13 @@ class LineRun:
         return parameters, inputs
 
     def _make_scheme(self, head_calls: Sequence[PreparedCalls]) -> Implicit | GaussSeidel | Jacobi:
-        coupling, forces = self.coupling, self._static_forces
+        coupling, forces = self.system.coupling, self._static_forces
         if coupling.drive == "Wire":
             sides = [ContactInPantograph(calls) for calls in head_calls]
         else:
-            for given in self._given:
-                if damping := parameter_value(self.pantograph, given, "contact.c"):
-                    raise ZSpringError(f"contact.c = {damping:g} N.s/m: must be 0 with drive Force; use drive Wire")
-            stiffness = [parameter_value(self.pantograph, given, "contact.k") for given in self._given]
+            for damping in filter(None, self.system.of_each("contact.c")):
+                raise ZSpringError(f"contact.c = {damping:g} N.s/m: must be 0 with drive Force; use drive Wire")
+            stiffness = self.system.of_each("contact.k")
             sides = [ContactInMaster(*each) for each in zip(head_calls, forces, stiffness)]
         if coupling.scheme == "implicit":
             tolerance = coupling.tolerance * max(1.0, *forces)
@@ -189,15 +162,9 @@ class LineRun:
         self._stack.close()
 
 
-def _settings(
-    journey: Journey,
-    coupling: Coupling,
-    catenary: Fmu,
-    wire: Instance,
-    pantograph: Fmu,
-    heads: Sequence[Instance],
-) -> dict[str, str]:
+def _settings(system: System, wire: Instance, heads: Sequence[Instance]) -> dict[str, str]:
     """Everything that it takes to repeat the run, in words."""
+    journey, coupling = system.journey, system.coupling
     settings = {
         "speed": f"{journey.speed * 3.6:.6g} km/h",
         "start": f"{journey.start:g} m",
@@ -213,8 +180,8 @@ def _settings(
         settings["spacing"] = f"{journey.spacing:g} m"
     if coupling.scheme == "implicit":
         settings["tolerance"] = f"{coupling.tolerance:g}"
-    named = [("catenary", catenary, wire)]
-    named += [(f"pantograph {i + 1}", pantograph, head) for i, head in enumerate(heads)]
+    named = [("catenary", system.catenary, wire)]
+    named += [(f"pantograph {i + 1}", system.pantograph, head) for i, head in enumerate(heads)]
     for prefix, fmu, instance in named:
         settings |= {f"{prefix} {key}": value for key, value in fmu.identity.items()}
         names = fmu.variables.names("parameter", "calculatedParameter")

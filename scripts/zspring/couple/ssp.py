@@ -35,8 +35,8 @@ def write_ssp(run: LineRun, path: Path) -> None:
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        sources = {}
-        for fmu in run.catenary, run.pantograph:
+        sources, line_fmu, pantograph = {}, run.system.catenary, run.system.pantograph
+        for fmu in line_fmu, pantograph:
             copy = Path(folder, fmu.path.name)
             copy_without_enumerations(fmu, copy)
             sources[fmu] = f"resources/{copy.name}"
@@ -45,8 +45,8 @@ def write_ssp(run: LineRun, path: Path) -> None:
             _tag("System"), name="line", description="Pantographs on an overhead contact line"
         )
         elements = ET.SubElement(system, _tag("Elements"))
-        starts = {LINE_ELEMENT: (run.catenary, run.wire_start)}
-        starts |= {element_name(i): (run.pantograph, start) for i, start in enumerate(run.head_starts)}
+        starts = {LINE_ELEMENT: (line_fmu, run.wire_start)}
+        starts |= {element_name(i): (pantograph, start) for i, start in enumerate(run.head_starts)}
         for name, (fmu, (parameters, inputs)) in starts.items():
             values = Path(folder, f"{name}.ssv")
             with Fmu(Path(folder, fmu.path.name)) as copy:
@@ -106,7 +106,7 @@ def _description(run: LineRun, system: ET.Element) -> bytes:
     """SystemStructure.ssd, with the communication step as the Open Simulation Platform annotates it."""
     for prefix, uri in ("ssd", _SSD), ("ssc", _SSC), ("osp", _OSP):
         ET.register_namespace(prefix, uri)
-    tool = run.catenary.description
+    tool = run.system.catenary.description
     root = ET.Element(_tag("SystemStructureDescription"), version="1.0", name="pantograph and catenary")
     root.set("generationTool", f"{tool.generationTool} {tool.version}")
     root.append(system)
