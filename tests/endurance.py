@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import fmpy
 from core import probe_folder
 from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
 
@@ -38,14 +37,9 @@ def command(fmu: Fmu, mode: str, count: int, also: Mapping[str, int] = {}) -> li
     settings = [f"i{vr(name)}={value}" for name, value in (integers | dict(also)).items()]
     settings += [f"s{vr(name)}=" + ",".join(map(repr, sine)) for name, sine in sines.items()]
     settings += [f"o{vr(name)}" for name in outputs]
-    (library,) = (
-        file
-        for name in {fmpy.platform, fmpy.platform_tuple}
-        for file in (fmu.folder / "binaries" / name).glob("*.so")
-    )
     return [
         probe_folder() / "endurance",
-        library,
+        fmu.library,
         fmu.description.guid,
         mode,
         str(count),

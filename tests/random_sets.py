@@ -37,6 +37,15 @@ class Tally:
     sensitive: int = 0  # depend on the last digits
     worst_error: float = 0.0
 
+    def __add__(self, other: Tally) -> Tally:
+        return Tally(
+            self.outcomes + other.outcomes,
+            self.faults + other.faults,
+            self.refined + other.refined,
+            self.sensitive + other.sensitive,
+            max(self.worst_error, other.worst_error),
+        )
+
 
 def choose(rng: np.random.Generator, start: float, low: float | None, high: float | None, decades: float) -> float:
     low, high = -np.inf if low is None else low, np.inf if high is None else high

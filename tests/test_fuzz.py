@@ -6,22 +6,8 @@ sanitizers and with libFuzzer: tests/release/test_sanitizers.py.
 
 from __future__ import annotations
 
-import re
-import subprocess
-from pathlib import Path
-
 import pytest
-from core import probe_folder
-
-CORPUS = sorted((Path(__file__).parent / "native" / "corpus").iterdir())
-
-
-def fuzz(model: str, *arguments: object) -> dict[str, int]:
-    """What was done: calls, refused, steps, discarded, states, foreign, replays."""
-    command = [str(probe_folder() / f"fuzz_{model}"), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr[-2000:]
-    return {name: int(count) for name, count in re.findall(r"(\w+) (\d+)", done.stdout)}
+from fuzzing import CORPUS, fuzz
 
 
 @pytest.mark.parametrize("model", ["ZSpringPantograph", "Catenary"])

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from trust_page import PAGE, PARTS, part, stress
-
-
-def cells(table: str) -> list[list[str]]:
-    """Rows of a table without its head."""
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
+from trust_page import PAGE, PARTS, cells, numbers, part, stress
 
 
 def test_the_effort_of_hard_steps_is_that_of_the_page():
@@ -17,8 +12,7 @@ def test_the_effort_of_hard_steps_is_that_of_the_page():
     shown, measured = cells(part(PAGE.read_text("utf-8"), "stress")), cells(stress())
     assert [row[:2] for row in shown] == [row[:2] for row in measured]
     for a, b in zip(shown, measured):
-        numbers = [[float(cell.replace(" ", "")) for cell in row[2:]] for row in (a, b)]
-        assert numbers[1] == pytest.approx(numbers[0], rel=0.02, abs=1)
+        assert [numbers(cell) for cell in b[2:]] == [pytest.approx(numbers(cell), rel=0.02, abs=1) for cell in a[2:]]
 
 
 @pytest.mark.parametrize("name", PARTS)

@@ -7,20 +7,23 @@ Without names all parts are measured, which takes about a quarter of an hour; wi
 
 from __future__ import annotations
 
+import re
 import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 from endurance import latency, measure
-from random_sets import DECADES, judge_all
+from random_sets import DECADES, Tally, judge_all
 from stress import Effort, grid
-from test_fuzz import fuzz
+from fuzzing import fuzz
 from zspring.fmu import CATENARY, PANTOGRAPH, Fmu
 
 PAGE = Path(__file__).parents[1] / "docs" / "trust.md"
 MODELS = (PANTOGRAPH, CATENARY)
-SETS = 10_000
+SETS, SHARES = 10_000, 16  # shares that processes take
 SEQUENCES = {PANTOGRAPH: 100_000, CATENARY: 10_000}
 LATENCY_STEPS = {PANTOGRAPH: 5_000_000, CATENARY: 200_000}
 SOAK_STEPS = {PANTOGRAPH: 100_000_000, CATENARY: 500_000}
@@ -52,35 +55,21 @@ def stress() -> str:
 
 def random_sets() -> str:
     rows = []
-    for model in MODELS:
-        for kind, decades in DECADES.items():
-            tally = judge_all(model, kind, range(SETS))
-            o = tally.outcomes
-            rows.append(
-                [
-                    f"{model}, {kind} (a factor of {10**decades:.3g})",
-                    o["ran"],
-                    o["discarded"],
-                    o["refused"],
-                    tally.refined or "",
-                    f"{tally.worst_error:.0e}" if tally.worst_error else "",
-                    tally.sensitive or "",
-                    len(tally.faults),
-                ]
-            )
-    return table(
-        [
-            "sets",
-            "ran",
-            "a step discarded",
-            "refused",
-            "balanced by finer steps",
-            "worst error of Newton",
-            "sensitive",
-            "faults",
-        ],
-        rows,
-    )
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        for model in MODELS:
+            for kind, decades in DECADES.items():
+                parts = [pool.submit(judge_all, model, kind, range(SETS)[i::SHARES]) for i in range(SHARES)]
+                tally = sum((part.result() for part in parts), Tally())
+                for fault in tally.faults:
+                    print(fault, file=sys.stderr)
+                counts = [tally.outcomes[kind] for kind in ("ran", "discarded", "refused")]
+                error = f"{tally.worst_error:.0e}" if tally.worst_error else ""
+                name = f"{model}, {kind} (a factor of {10**decades:.3g})"
+                rows.append(
+                    [name, *counts, tally.refined or "", error, tally.sensitive or "", len(tally.faults)]
+                )
+    header = "sets, ran, a step discarded, refused, balanced by finer steps, worst error of Newton, sensitive, faults"
+    return table(header.split(", "), rows)
 
 
 def calls() -> str:
@@ -89,20 +78,8 @@ def calls() -> str:
     for model in MODELS:
         done = fuzz(model, "--random", 1_000_000, SEQUENCES[model])
         rows.append([model, thousands(SEQUENCES[model]), *(thousands(done[kind]) for kind in kinds)])
-    return table(
-        [
-            "FMU",
-            "sequences",
-            "calls",
-            "refused",
-            "steps made",
-            "steps discarded",
-            "states kept",
-            "damaged states that were accepted",
-            "replays, bit for bit",
-        ],
-        rows,
-    )
+    header = ["FMU", "sequences", "calls", "refused", "steps made", "steps discarded", "states kept"]
+    return table([*header, "damaged states that were accepted", "replays, bit for bit"], rows)
 
 
 def time_of_a_step() -> str:
@@ -154,14 +131,23 @@ def part(page: str, name: str) -> str:
     return page[page.index(begin) + len(begin) : page.index(end)]
 
 
-def main(names: list[str]) -> None:
-    for name in names or PARTS:
-        text = PARTS[name]()
-        page = PAGE.read_text("utf-8")
-        begin, end = markers(name)
-        PAGE.write_text(page.replace(begin + part(page, name) + end, f"{begin}{text}\n{end}"), "utf-8")
-        print(f"{name}\n{text}\n", flush=True)
+def cells(table: str) -> list[list[str]]:
+    """Rows of a table without its head."""
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
+
+
+def numbers(cell: str) -> list[float]:
+    return [float(number.replace(" ", "")) for number in re.findall(r"\d[\d ]*(?:\.\d+)?(?:e[-+]\d+)?", cell)]
+
+
+def measure_into(page: Path, name: str) -> str:
+    """Measure a part and write it there; returns its table."""
+    found, text = PARTS[name](), page.read_text("utf-8")
+    begin, end = markers(name)
+    page.write_text(text.replace(begin + part(text, name) + end, f"{begin}{found}\n{end}"), "utf-8")
+    return found
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    for name in sys.argv[1:] or PARTS:
+        print(f"{name}\n{measure_into(PAGE, name)}\n", flush=True)

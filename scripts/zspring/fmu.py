@@ -86,13 +86,17 @@ class Fmu:
         with ExitStack() as stack:
             instances = []
             for number in range(count):
-                instance = Instance(self, f"zspring{number}", self._library())
+                instance = Instance(self, f"zspring{number}", self.library)
                 stack.callback(instance.free)
                 instances.append(instance)
             yield instances
 
-    def _library(self) -> Path:
-        """The shared library for this platform, in the folder of FMI 2.0 or of 2.0.5."""
+    @property
+    def library(self) -> Path:
+        """The shared library for this platform, in the folder of FMI 2.0 or of 2.0.5.
+
+        Raises ZSpringError where there is none.
+        """
         name = self.description.coSimulation.modelIdentifier + fmpy.sharedLibraryExtension
         for platform in (fmpy.platform_tuple, fmpy.platform):
             path = self.folder / "binaries" / platform / name

@@ -2,31 +2,24 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from core import probe_folder
 from release_tools import ROOT, tool
-from test_fuzz import CORPUS
+from fuzzing import CORPUS, fuzz
 from zspring.fmu import CATENARY, PANTOGRAPH
 
 MODELS = [PANTOGRAPH, CATENARY]
 SEQUENCES = {PANTOGRAPH: 2000, CATENARY: 200}
 SECONDS_OF_LIBFUZZER = 300
+VALGRIND = "--error-exitcode=1 --leak-check=full --show-leak-kinds=all --errors-for-leak-kinds=all --quiet".split()
 MEMORY_AND_UB = "address,undefined,float-cast-overflow"
 
 
-def run(*command: object, **variables: str) -> str:
-    done = subprocess.run(
-        list(map(str, command)),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        env=os.environ | variables,
-    )
+def run(*command: object) -> str:
+    done = subprocess.run([*map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     assert done.returncode == 0, done.stdout[-4000:]
     return done.stdout
 
@@ -35,22 +28,16 @@ def built(name: str, sanitizers: str, compiler: str, *options: str) -> Path:
     """Folder of the fuzz programs with these sanitizers; built anew where the sources have changed."""
     build = ROOT / "build" / f"sanitize-{name}"
     cmake = [sys.executable, "-m", "cmake"]
-    run(
-        *cmake,
-        "-S",
-        ROOT,
-        "-B",
-        build,
-        "-G",
-        "Ninja",
-        f"-DCMAKE_CXX_COMPILER={compiler}",
-        "-DCMAKE_BUILD_TYPE=Debug",
-        "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g",
-        "-DZSPRING_TESTS=ON",
-        f"-DZSPRING_SANITIZE={sanitizers}",
-        f"-DPython3_EXECUTABLE={sys.executable}",
-        *options,
-    )
+    settings = {
+        "CMAKE_CXX_COMPILER": compiler,
+        "CMAKE_BUILD_TYPE": "Debug",
+        "CMAKE_CXX_FLAGS_DEBUG": "-O1 -g",
+        "ZSPRING_TESTS": "ON",
+        "ZSPRING_SANITIZE": sanitizers,
+        "Python3_EXECUTABLE": sys.executable,
+    }
+    defined = [f"-D{name}={value}" for name, value in settings.items()]
+    run(*cmake, "-S", ROOT, "-B", build, "-G", "Ninja", *defined, *options)
     run(*cmake, "--build", build, "--target", "fuzz")
     return build / "bin"
 
@@ -75,18 +62,8 @@ def test_no_data_race(model, compiler):
 
 @pytest.mark.parametrize("model", MODELS)
 def test_valgrind_finds_no_error_and_no_leak(model):
-    run(
-        tool("valgrind", "apt install valgrind"),
-        "--error-exitcode=1",
-        "--leak-check=full",
-        "--show-leak-kinds=all",
-        "--errors-for-leak-kinds=all",
-        "--quiet",
-        probe_folder() / f"fuzz_{model}",
-        "--random",
-        1,
-        SEQUENCES[model] // 20,
-    )
+    valgrind = [tool("valgrind", "apt install valgrind"), *VALGRIND]
+    assert fuzz(model, "--random", 1, SEQUENCES[model] // 20, under=valgrind)["calls"] > 0
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -97,14 +74,6 @@ def test_libfuzzer_finds_no_fault(model, tmp_path):
     found = ROOT / "build" / "fuzz" / model
     found.mkdir(parents=True, exist_ok=True)
     if not any(found.iterdir()):
-        run(probe_folder() / f"fuzz_{model}", "--write", 1, 200, found)
-    run(
-        program,
-        f"-max_total_time={SECONDS_OF_LIBFUZZER}",
-        "-max_len=1500",
-        "-timeout=60",
-        "-rss_limit_mb=4000",
-        f"-artifact_prefix={tmp_path}/",
-        found,
-        CORPUS[0].parent,
-    )
+        fuzz(model, "--write", 1, 200, found)
+    limits = [f"-max_total_time={SECONDS_OF_LIBFUZZER}", "-max_len=1500", "-timeout=60", "-rss_limit_mb=4000"]
+    run(program, *limits, f"-artifact_prefix={tmp_path}/", found, CORPUS[0].parent)

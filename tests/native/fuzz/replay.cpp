@@ -1,9 +1,10 @@
 // The same sequences without libFuzzer:
 //
 //   fuzz_MODEL FILE...                            replays files
-//   fuzz_MODEL --random FIRST COUNT [THREADS]     runs COUNT random sequences a thread, seeded FIRST, FIRST + 1,
-//   ... fuzz_MODEL --write FIRST COUNT FOLDER         writes such sequences as files, for libFuzzer to start from
+//   fuzz_MODEL --random FIRST COUNT [THREADS]     runs COUNT random sequences a thread, seeded from FIRST on
+//   fuzz_MODEL --write FIRST COUNT FOLDER         writes such sequences as files, for libFuzzer to start from
 //
+// The search path for libraries tells where the FMU's is, but for programs with sanitizers, which have it inside.
 // Prints what was done; a fault ends it.
 #include <csignal>
 #include <cstdio>

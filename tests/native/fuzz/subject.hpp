@@ -12,6 +12,9 @@
 
 namespace fuzz {
 
+// Of a serialised state (fmi/serialization.cpp): magic, GUID, count, checksum.
+inline constexpr std::size_t header_size = 64, count_at = 48, checksum_at = 56;
+
 // Which statuses a call may return.
 enum Allowed : unsigned { Ok = 1 << fmi2OK, Refused = 1 << fmi2Error, Discarded = 1 << fmi2Discard };
 
