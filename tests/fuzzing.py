@@ -17,7 +17,7 @@ SEARCH_PATH = {"win32": "PATH", "darwin": "DYLD_LIBRARY_PATH"}.get(sys.platform,
 
 
 def fuzz(model: str, *arguments: object, under: Sequence[str] = ()) -> dict[str, int]:
-    """What was done: calls, refused, steps, discarded, states, foreign, replays.
+    """What was done: calls, refused, steps, discarded, states, foreign, replays, situations.
 
     under   a program to run it under, with its options
     """

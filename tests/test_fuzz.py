@@ -21,6 +21,7 @@ def test_random_sequences_of_calls_break_no_rule(model, sequences):
     assert done["calls"] > 100 * sequences
     for kind in ("refused", "steps", "discarded", "states", "foreign", "replays"):
         assert done[kind] > 0.05 * sequences, kind
+    assert done["situations"] > 0.9 * 27 * 5  # kinds of call, states of an instance
 
 
 @pytest.mark.parametrize("model", ["ZSpringPantograph", "Catenary"])

@@ -73,12 +73,12 @@ def random_sets() -> str:
 
 
 def calls() -> str:
-    kinds = ["calls", "refused", "steps", "discarded", "states", "foreign", "replays"]
+    kinds = ["calls", "situations", "refused", "steps", "discarded", "states", "foreign", "replays"]
     rows = []
     for model in MODELS:
         done = fuzz(model, "--random", 1_000_000, SEQUENCES[model])
         rows.append([model, thousands(SEQUENCES[model]), *(thousands(done[kind]) for kind in kinds)])
-    header = ["FMU", "sequences", "calls", "refused", "steps made", "steps discarded", "states kept"]
+    header = ["FMU", "sequences", "calls", "kinds of call x states", "refused", "steps made", "steps discarded", "states kept"]
     return table([*header, "damaged states that were accepted", "replays, bit for bit"], rows)
 
 

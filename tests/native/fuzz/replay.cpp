@@ -33,6 +33,7 @@ std::vector<std::uint8_t> random_bytes(std::uint64_t seed) {
 void add(Counts& sum, const Counts& c) {
   sum.calls += c.calls, sum.refused += c.refused, sum.steps += c.steps, sum.discarded += c.discarded;
   sum.states += c.states, sum.foreign_states += c.foreign_states, sum.replays += c.replays;
+  sum.situations.insert(c.situations.begin(), c.situations.end());
 }
 
 }  // namespace
@@ -73,6 +74,8 @@ int main(int argc, char** argv) {
       add(sum, run(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
     }
   }
-  std::printf("calls %lu, refused %lu, steps %lu, discarded %lu, states %lu, foreign %lu, replays %lu\n",
-              sum.calls, sum.refused, sum.steps, sum.discarded, sum.states, sum.foreign_states, sum.replays);
+  std::printf("calls %lu, refused %lu, steps %lu, discarded %lu, states %lu, foreign %lu, replays %lu, "
+              "situations %zu\n",
+              sum.calls, sum.refused, sum.steps, sum.discarded, sum.states, sum.foreign_states, sum.replays,
+              sum.situations.size());
 }

@@ -54,6 +54,7 @@ void Subject::begin_call() {
 
 fmi2Status Subject::judge(const char* function, fmi2Status status, unsigned allowed) {
   counts_.calls += 1;
+  counts_.situations.emplace(function, expected_.state);
   counts_.refused += status == fmi2Error;
   if (!(allowed >> status & 1)) fault(function, "returned status " + std::to_string(status));
   if (status == fmi2OK && log_.lines > 0) fault(function, "is OK but logged a failure");

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bytes.hpp"
@@ -20,6 +22,7 @@ enum Allowed : unsigned { Ok = 1 << fmi2OK, Refused = 1 << fmi2Error, Discarded 
 
 struct Counts {
   unsigned long calls = 0, refused = 0, steps = 0, discarded = 0, states = 0, foreign_states = 0, replays = 0;
+  std::set<std::pair<std::string, State>> situations;  // which call was made in which state
 };
 
 // What the FMU's state should be.
