@@ -1,13 +1,16 @@
 """Any sequence of FMI calls, any bytes as a state: judged call by call in C++ against a small model of the rules.
 
-tests/native/fuzz judges; here it replays what once was a fault and runs some random sequences. Longer, with
-sanitizers and with libFuzzer: tests/release/test_sanitizers.py.
+tests/native/fuzz judges; here it replays what once was a fault and runs some random sequences, also with sanitizers
+where a compiler has them. Longer, and with other sanitizers and libFuzzer: tests/release/test_sanitizers.py.
 """
 
 from __future__ import annotations
 
 import pytest
 from fuzzing import CORPUS, fuzz
+from sanitizers import check_memory_and_ub, sanitizing_compiler
+
+COMPILER = sanitizing_compiler()
 
 
 @pytest.mark.parametrize("model", ["ZSpringPantograph", "Catenary"])
@@ -27,3 +30,10 @@ def test_random_sequences_of_calls_break_no_rule(model, sequences):
 @pytest.mark.parametrize("model", ["ZSpringPantograph", "Catenary"])
 def test_eight_threads_with_their_own_instances_break_no_rule(model):
     assert fuzz(model, "--random", 100_000, 20, 8)["calls"] > 100 * 160
+
+
+if COMPILER:
+
+    @pytest.mark.parametrize("model, sequences", [("ZSpringPantograph", 1000), ("Catenary", 200)])
+    def test_no_memory_error_no_undefined_behaviour_no_leak(model, sequences):
+        check_memory_and_ub(model, sequences, COMPILER)
