@@ -20,6 +20,7 @@ from bootstrap import BUILD, PYTHON, ROOT
 INSTALLED = BUILD / "release" / "installed"
 REPORT = BUILD / "release" / "tests.xml"
 BOTH_SUITES = ["--override-ini=norecursedirs=node_modules", "tests"]  # pyproject.toml leaves out tests/release
+IN_TURN = "--numprocesses=0"  # tests beside each other would disturb the times that are measured
 
 
 def run(*command: str | Path, **variables: str) -> int:
@@ -56,7 +57,7 @@ def main() -> int:
         if not any((ROOT / argument.partition("::")[0]).exists() for argument in arguments):
             arguments += BOTH_SUITES
         REPORT.unlink(missing_ok=True)
-        run(PYTHON, "-m", "pytest", f"--junitxml={REPORT}", *arguments, PYTHONPATH=str(INSTALLED))
+        run(PYTHON, "-m", "pytest", f"--junitxml={REPORT}", IN_TURN, *arguments, PYTHONPATH=str(INSTALLED))
         rows += test_rows() if REPORT.exists() else [("tests", 0, 1, 0.0)]
     print(table([*rows, ("all", *(sum(column) for column in list(zip(*rows))[1:]))]))
     return int(any(failed for _, _, failed, _ in rows))
