@@ -17,6 +17,9 @@ from pathlib import Path
 
 from bootstrap import BUILD, PYTHON, ROOT
 
+sys.path.append(str(ROOT / "tests" / "release"))
+from release_tools import missing
+
 INSTALLED = BUILD / "release" / "installed"
 REPORT = BUILD / "release" / "tests.xml"
 BOTH_SUITES = ["--override-ini=norecursedirs=node_modules", "tests"]  # pyproject.toml leaves out tests/release
@@ -46,6 +49,8 @@ def test_rows() -> list[tuple[str, int, int, float]]:
 
 
 def main() -> int:
+    if len(sys.argv) == 1 and (lacking := missing()):
+        sys.exit("\n".join(f"release check: {line}" for line in lacking))
     begin = time.monotonic()
     packaged = run(PYTHON, "scripts/release.py") == 0
     rows = [("scripts/package", int(packaged), int(not packaged), time.monotonic() - begin)]

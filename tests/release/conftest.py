@@ -59,9 +59,9 @@ def emulated(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[...,
 
     def emulator(platform: str) -> list[str]:
         if platform == "win64":
-            return [tool("wine", "apt install wine64 wine")]
+            return [tool("wine")]
         if platform == "aarch64-linux":
-            qemu = tool("qemu-aarch64", "apt install qemu-user libc6-arm64-cross")
+            qemu = tool("qemu-aarch64")
             system = Path("/usr/aarch64-linux-gnu")
             if not (system / "lib").is_dir():
                 pytest.fail(f"{system}/lib is missing: apt install libc6-arm64-cross", pytrace=False)

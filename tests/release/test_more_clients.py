@@ -49,7 +49,7 @@ def vdmcheck() -> Path:
             f"<dependency>{dependency}<version>{VDMCHECK}</version></dependency></dependencies></project>"
         )
         run_tool(
-            *(tool("mvn", "apt install maven"), "-q", "-B", "dependency:copy-dependencies"),
+            *(tool("mvn"), "-q", "-B", "dependency:copy-dependencies"),
             *("-Dmdep.stripVersion=true", f"-DoutputDirectory={folder}"),
             folder=folder,
         )
@@ -60,7 +60,7 @@ def vdmcheck() -> Path:
 
 
 def vdmchecked(folder: Path, file: Path) -> str:
-    command = [tool("java", "apt install default-jre"), "-cp", "vdmcheck2.jar", "VDMCheckPlus", file]
+    command = [tool("java"), "-cp", "vdmcheck2.jar", "VDMCheckPlus", file]
     done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     return done.stdout
 
@@ -85,7 +85,7 @@ def fmi_sim() -> Path:
     program = folder / "bin" / ("fmi-sim.exe" if sys.platform == "win32" else "fmi-sim")
     if not program.exists():
         run_tool(
-            *(tool("cargo", "install Rust from rustup.rs"), "install", "--quiet", "--locked"),
+            *(tool("cargo"), "install", "--quiet", "--locked"),
             *("fmi-sim", "--version", FMI_SIM, "--root", folder),
         )
     return program

@@ -35,14 +35,14 @@ def test_no_data_race(model, compiler):
 
 @pytest.mark.parametrize("model", MODELS)
 def test_valgrind_finds_no_error_and_no_leak(model):
-    valgrind = [tool("valgrind", "apt install valgrind"), *VALGRIND]
+    valgrind = [tool("valgrind"), *VALGRIND]
     assert fuzz(model, "--random", 1, SEQUENCES[model] // 100, under=valgrind)["calls"] > 0
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_libfuzzer_finds_no_fault(model, tmp_path):
     """Goes on with the sequences that earlier runs found worth keeping, in build/fuzz."""
-    clang = tool("clang++", "apt install clang libclang-rt-dev")
+    clang = tool("clang++")
     program = sanitized("libfuzzer", MEMORY_AND_UB, clang, "-DZSPRING_LIBFUZZER=ON") / f"fuzz_{model}"
     found = ROOT / "build" / "fuzz" / model
     found.mkdir(parents=True, exist_ok=True)

@@ -22,7 +22,7 @@ def test_a_running_fmu_asks_the_system_for_memory_only(model, tmp_path):
     trace = tmp_path / "trace"
     with Fmu(installed_fmu(model)) as fmu:
         run = command(fmu, "latency", 1000)  # prints at its end, and does nothing else beside calling the FMU
-        done = subprocess.run([tool("strace", "apt install strace"), "-f", "-o", trace, *run], capture_output=True)
+        done = subprocess.run([tool("strace"), "-f", "-o", trace, *run], capture_output=True)
     assert done.returncode == 0, done.stderr
     calls = trace.read_text().splitlines()
     loaded = next(i for i, line in enumerate(calls) if f"{model}.so" in line and "open" in line)
