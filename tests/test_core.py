@@ -101,6 +101,17 @@ def test_resolvent_solves_z_for_rate_and_moment(law):
             assert s == 0
 
 
+def test_tanh_resolvent_is_exact_from_any_guess():
+    """From rods that all but stick to fast ones, with guesses that are far off, or just above the root."""
+    for _ in range(5000):
+        rho, tau, z = 10 ** RNG.uniform([-3, 0, -9], [2, 5, 1])
+        exact, *_ = resolvent(TANH, rho, tau, z)
+        for guess in 10 ** RNG.uniform(-9, 1) / tau, exact * (1 + 10 ** RNG.uniform(-8, 0)):
+            w, s, *_ = resolvent(TANH, rho, tau, z, guess)
+            assert s == pytest.approx(np.tanh(tau * w), abs=3e-15)
+            assert rho * w == pytest.approx(rho * exact, rel=1e-13, abs=1e-14)
+
+
 def test_tanh_resolvent_has_the_slope_of_its_differences():
     for rho, tau, z in zip(10 ** RNG.uniform(-1, 1, 100), 10 ** RNG.uniform(0, 3, 100), RNG.uniform(-3, 3, 100)):
         _, _, dw, ds = resolvent(TANH, rho, tau, z)

@@ -23,12 +23,11 @@ double scaled_rate(double r, double z, double guess) {
     const double slope = (1 - t) * (1 + t);
     const double df = r + slope;
     (f < 0 ? low : high) = y;
-    double next = y - f * df / (df * df + f * t * slope);
-    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-    const double change = std::abs(next - y);
-    y = next;
-    // Whatever r is, |f''| and |f'''| stay below 4 f', so that what is left is below 2 change^3.
-    if (change <= 1e-5 || !(low < high)) break;
+    const double step = -f * df / (df * df + f * t * slope);
+    // Whatever r is, |f''| and |f'''| stay below 4 f', so that what such a step leaves is below 2 step^3.
+    if (std::abs(step) <= 1e-5) return std::clamp(y + step, low, high);
+    y = y + step >= low && y + step <= high ? y + step : 0.5 * (low + high);
+    if (!(low < high)) break;
   }
   return y;
 }
