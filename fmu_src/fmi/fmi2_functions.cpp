@@ -295,7 +295,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
                                         const fmi2Integer order[], fmi2Real value[]) {
   return guarded(c, after_step, "fmi2GetRealOutputDerivatives", [&](Instance& i) {
     need(vr, n, "vr"), need(order, n, "order"), need(value, n, "value");
-    for (size_t k = 0; k < n; ++k) value[k] = i.output_derivative(vr[k], order[k]);
+    i.output_derivatives(vr, n, order, value);
     return fmi2OK;
   });
 }

@@ -153,11 +153,18 @@ void Instance::set_input_derivatives(const fmi2ValueReference references[], size
   }
 }
 
-double Instance::output_derivative(unsigned reference, int order) {
-  const Variable& v = variable(reference, Type::Real);
-  if (!v.binding.output) refuse("%s: is no output and has no output derivatives", v.name);
-  if (order != 1) refuse("%s: derivative of order %d; must be 1", v.name, order);
-  return finite(v, v.get(simulation().output_rates()));
+void Instance::output_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[],
+                                  double values[]) {
+  for (size_t i = 0; i < n; ++i) {
+    const Variable& v = variable(references[i], Type::Real);
+    if (!v.binding.output) refuse("%s: is no output and has no output derivatives", v.name);
+    if (orders[i] != 1) refuse("%s: derivative of order %d; must be 1", v.name, orders[i]);
+  }
+  const Outputs rates = simulation().output_rates();
+  for (size_t i = 0; i < n; ++i) {
+    const Variable& v = variables[references[i]];
+    values[i] = finite(v, v.get(rates));
+  }
 }
 
 void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown,
