@@ -28,9 +28,8 @@ BlockCholesky::BlockCholesky(const SparseMatrix& matrix) : blocks_(static_cast<s
     const Eigen::LLT<Eigen::Matrix4d> factor(diagonal);
     if (factor.info() != Eigen::Success || !diagonal.allFinite())
       throw ParameterError(
-          "the line's matrices are not positive definite to rounding: its masses, tensions, stiffnesses and "
-          "lengths "
-          "must be of less different orders of magnitude");
+          "the line's matrices are not positive definite to rounding: its masses, tensions, stiffnesses "
+          "and lengths must be of less different orders of magnitude");
     blocks_[i].inverse = factor.matrixL().solve(Eigen::Matrix4d::Identity());
     blocks_[i].forward = blocks_[i].inverse * below;
     blocks_[i].backward.setZero();

@@ -87,15 +87,14 @@ LineState Hht::at_rest_if_taut(const BlockCholesky& factor, const Loads& loads) 
   return s;
 }
 
-LineState Hht::at_rest(const Loads& loads) {
+std::optional<LineState> Hht::at_rest(const Loads& loads) {
   const BlockCholesky factor = static_factor();
   LineState s = at_rest_if_taut(factor, loads);
   trial_forces(s.u, s.a, 0);
   trial_ += line_.shape.tension;
   if (trial_.size() > 0 && trial_.minCoeff() < 0) {
     const DropperResponse response(line_.mesh, factor, 1);
-    if (slackening_.solve(trial_, response.compliance(), s.slack) < 0)
-      throw ParameterError("no equilibrium of the line under the initial contact forces was found");
+    if (slackening_.solve(trial_, response.compliance(), s.slack) < 0) return std::nullopt;
     add_slack(response, 1, s.slack, s.u);
   }
   wires_.multiply(s.u, x_);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "droppers.hpp"
 #include "line.hpp"
@@ -33,7 +34,7 @@ class Hht {
   const StepFactors& factors(double h);
 
   // At rest in equilibrium under `loads`. Throws ParameterError where no equilibrium is found.
-  LineState at_rest(const Loads& loads);
+  std::optional<LineState> at_rest(const Loads& loads);  // none where no set of slack droppers fits
   LineState at_rest_variation(const Loads& dloads, const VectorXd& slack);  // slack: of the state at rest
   // From the loads `l0`, at its begin, to `l1`. False, with `s` without meaning, when no set of slack droppers
   // fits.

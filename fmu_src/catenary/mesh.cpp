@@ -13,10 +13,12 @@ void check_droppers(const Parameters& p) {
   double last = 0;
   for (int i = 0; i < p.dropper.count; ++i) {
     const double x = p.dropper.position[i];
-    if (x < last + least_distance || x > p.span - least_distance) {
+    const double low = last + least_distance, high = p.span - least_distance;
+    if (x < low || x > high) {
       char text[160];
-      std::snprintf(text, sizeof text, "dropper.position[%d] = %.10g m: must be above %.10g m and below %.10g m",
-                    i + 1, x, last, p.span);
+      std::snprintf(text, sizeof text,
+                    "dropper.position[%d] = %.10g m: must be at least %.10g m and at most %.10g m", i + 1, x, low,
+                    high);
       throw ParameterError(text);
     }
     last = x;

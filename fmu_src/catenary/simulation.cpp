@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "communication_step.hpp"
 
@@ -19,6 +21,16 @@ namespace {
   throw ParameterError(text);
 }
 
+[[noreturn]] void refuse_balance(const Passage placed[pantographs]) {
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "pantograph[1].force = %.10g N, pantograph[2].force = %.10g N: no equilibrium of the line under them "
+      "was found, where the run would begin",
+      placed[0].force, placed[1].force);
+  throw ParameterError(text);
+}
+
 }  // namespace
 
 Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : line_(parameters), hht_(line_) {
@@ -29,7 +41,9 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : lin
     const Passage& at = placed[i] = initial_passage(line_.p, i, inputs.pantograph[i]);
     if (at.force != 0 && !line_.mesh.contains(at.position)) refuse_start(line_.p, i, at, facts_.length);
   }
-  state_ = hht_.at_rest(loads_at(line_.mesh, placed));
+  std::optional<LineState> rest = hht_.at_rest(loads_at(line_.mesh, placed));
+  if (!rest) refuse_balance(placed);
+  state_ = *std::move(rest);
   std::copy_n(placed, pantographs, state_.passage);
   before_ = next_ = state_;
   held_ = inputs;

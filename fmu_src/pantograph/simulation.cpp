@@ -185,6 +185,10 @@ bool Simulation::advance(const Parameters& tuned, const Inputs& inputs, double l
     failure.time = unsolved.time;
     if (solved)
       std::snprintf(failure.text, sizeof failure.text, overflow);
+    else if (!std::isfinite(f.residual))
+      std::snprintf(failure.text, sizeof failure.text,
+                    "no solution even after halving the internal step to 1/1024: the spring would have no length, "
+                    "or the values overflow");
     else
       std::snprintf(failure.text, sizeof failure.text,
                     "no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
