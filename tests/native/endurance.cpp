@@ -6,13 +6,14 @@
 // o: a Real output that is read and compared.
 // Prints one line of numbers; ends with a status other than 0 when an FMI call does not return fmi2OK.
 //
-//   latency    COUNT steps: median, 99 %, 99.9 %, 99.99 %, worst in us of fmi2DoStep; the same of a cycle of
-//   setting
-//              the inputs, the step and reading the outputs
-//   soak       COUNT steps: seconds; resident memory in KiB after a hundredth of them and at the end
-//   instances  COUNT instances alive at once, ten steps each: resident KiB an instance, how many differ in their
-//   outputs resets     COUNT times reset, initialization, a step: resident KiB after a hundredth and at the end
-//   threads    eight threads with an instance each, COUNT steps: how many differ from one that ran alone
+//   latency    COUNT steps: median, 99 %, 99.9 %, 99.99 %, worst in us of fmi2DoStep;
+//              the same of a cycle of setting the inputs, the step and reading the outputs
+//   soak       COUNT steps: seconds; resident KiB after a hundredth of them and at the end
+//   instances  COUNT instances alive at once, ten steps each: resident KiB an instance;
+//              how many differ in their outputs
+//   resets     COUNT times reset, initialization, a step: seconds; resident KiB after a hundredth
+//              of them and at the end
+//   threads    eight threads with an instance each, COUNT steps: how many differ from one alone
 #include <dlfcn.h>
 #include <unistd.h>
 

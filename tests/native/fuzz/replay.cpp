@@ -1,10 +1,10 @@
 // The same sequences without libFuzzer:
 //
-//   fuzz_MODEL FILE...                            replays files
-//   fuzz_MODEL --random FIRST COUNT [THREADS]     runs COUNT random sequences a thread, seeded from FIRST on
-//   fuzz_MODEL --write FIRST COUNT FOLDER         writes such sequences as files, for libFuzzer to start from
+//   fuzz_MODEL FILE...                          replays files
+//   fuzz_MODEL --random FIRST COUNT [THREADS]   runs COUNT random sequences a thread, seeded from FIRST on
+//   fuzz_MODEL --write FIRST COUNT FOLDER       writes such sequences as files, to start libFuzzer from
 //
-// The search path for libraries tells where the FMU's is, but for programs with sanitizers, which have it inside.
+// The search path for libraries tells where the FMU's is, but for programs with sanitizers: it is inside.
 // Prints what was done; a fault ends it.
 #include <csignal>
 #include <cstdio>
@@ -74,8 +74,9 @@ int main(int argc, char** argv) {
       add(sum, run(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
     }
   }
-  std::printf("calls %lu, refused %lu, steps %lu, discarded %lu, states %lu, foreign %lu, replays %lu, "
-              "situations %zu\n",
-              sum.calls, sum.refused, sum.steps, sum.discarded, sum.states, sum.foreign_states, sum.replays,
-              sum.situations.size());
+  std::printf(
+      "calls %lu, refused %lu, steps %lu, discarded %lu, states %lu, foreign %lu, replays %lu, "
+      "situations %zu\n",
+      sum.calls, sum.refused, sum.steps, sum.discarded, sum.states, sum.foreign_states, sum.replays,
+      sum.situations.size());
 }
