@@ -8,6 +8,7 @@ The tests find the package of the release's wheel, with the release FMUs, instea
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -48,22 +49,34 @@ def test_rows() -> list[tuple[str, int, int, float]]:
     return [(name, *rows[name]) for name in sorted(rows)]
 
 
+def installed(rows: list[tuple[str, int, int, float]]) -> bool:
+    """Whether the tests will find the wheel's package, and nothing else under its name; adds a row for it."""
+    begin = time.monotonic()
+    (wheel,) = (ROOT / "dist").glob("*.whl")
+    shutil.rmtree(INSTALLED, ignore_errors=True)
+    done = run(PYTHON, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", INSTALLED, wheel) == 0
+    found = f"import zspring, pathlib; assert pathlib.Path({str(INSTALLED)!r}) in pathlib.Path(zspring.__file__).parents"
+    done = done and run(PYTHON, "-c", found, PYTHONPATH=str(INSTALLED)) == 0
+    rows.append(("installation of the wheel", int(done), int(not done), time.monotonic() - begin))
+    return done
+
+
 def main() -> int:
     if len(sys.argv) == 1 and (lacking := missing()):
         sys.exit("\n".join(f"release check: {line}" for line in lacking))
     begin = time.monotonic()
     packaged = run(PYTHON, "scripts/release.py") == 0
     rows = [("scripts/package", int(packaged), int(not packaged), time.monotonic() - begin)]
-    if packaged:
-        (wheel,) = (ROOT / "dist").glob("*.whl")
-        run(PYTHON, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--upgrade",
-            "--target", INSTALLED, wheel)
+    if packaged and installed(rows):
         arguments = sys.argv[1:]
         if not any((ROOT / argument.partition("::")[0]).exists() for argument in arguments):
             arguments += BOTH_SUITES
         REPORT.unlink(missing_ok=True)
-        run(PYTHON, "-m", "pytest", f"--junitxml={REPORT}", IN_TURN, *arguments, PYTHONPATH=str(INSTALLED))
-        rows += test_rows() if REPORT.exists() else [("tests", 0, 1, 0.0)]
+        status = run(PYTHON, "-m", "pytest", f"--junitxml={REPORT}", IN_TURN, *arguments, PYTHONPATH=str(INSTALLED))
+        found = test_rows() if REPORT.exists() else []
+        rows += found
+        if status and not any(failed for _, _, failed, _ in found):
+            rows.append((f"pytest, status {status}", 0, 1, 0.0))
     print(table([*rows, ("all", *(sum(column) for column in list(zip(*rows))[1:]))]))
     return int(any(failed for _, _, failed, _ in rows))
 

@@ -12,6 +12,7 @@ from trust_page import PAGE, PARTS, cells, measure_into, numbers, part
 from zspring.fmu import CATENARY, PANTOGRAPH
 
 GROWTH = 1024  # KiB, of resident memory: what the C library keeps at hand
+SLACK = {"stress": 1, "random_sets": 5, "calls": 20}  # of counts, where 2 % is less
 SMALL_AND_LARGE = {PANTOGRAPH: 32, CATENARY: 4096}  # KiB, of an instance
 
 
@@ -31,10 +32,10 @@ def test_the_figures_of_the_page_are_those_of_the_release(name, page):
         assert_flat_and_equal(measured)
     elif name != "time_of_a_step":
         for a, b in zip(shown, measured):
-            expected = [pytest.approx(numbers(cell), rel=0.02, abs=1 if name == "stress" else 10) for cell in a[1:]]
+            expected = [pytest.approx(numbers(cell), rel=0.02, abs=SLACK[name]) for cell in a[1:]]
             assert [numbers(cell) for cell in b[1:]] == expected, a[0]
-    if name == "random_sets":
-        assert {row[-1] for row in measured} == {"0"}  # faults
+    if name == "random_sets":  # which tell the worst error too; one of above 1e-4 is a fault
+        assert {row[-1] for row in measured} == {"0"}
 
 
 def assert_flat_and_equal(rows: list[list[str]]) -> None:
