@@ -94,7 +94,7 @@ def read_stamp() -> dict:
         names = installed()
     except (OSError, ValueError):
         return {}
-    if not (PYTHON.exists() and names.issuperset(stamp["dependencies"])):
+    if not (PYTHON.exists() and names.issuperset(stamp.get("dependencies", ()))):
         return {}
     if "zspring" not in names:
         stamp.pop("package", None)
@@ -113,7 +113,8 @@ def write_stamp(stamp: dict) -> None:
 
 def note_dependencies(stamp: dict) -> None:
     """Write the stamp with what is installed now, so that a dependency that is lost is noticed."""
-    write_stamp(stamp | {"dependencies": sorted(name for name in installed() if "spring" not in name)})
+    stamp["dependencies"] = sorted(name for name in installed() if "spring" not in name)
+    write_stamp(stamp)
 
 
 def make_environment(runner: Runner, keep: bool) -> str:
