@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 import threading
@@ -12,14 +13,16 @@ import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssv
 from zspring.fmu import Fmu
+from zspring.identify import run
 from zspring.identify.bench_model import BenchModel
 from zspring.identify.fit import fit
 from zspring.identify.measured import Curve
 from zspring.identify.problem import ThreeMassModel, Problem, ZSpringModel
 from zspring.identify.report import doubts
 from zspring.identify.search import CostRecord, search
-from zspring.identify.settings import Free, Search, Settings
+from zspring.identify.settings import Free, Search, Settings, read_settings
 from zspring.identify.static_test import StaticTest
+from zspring.interrupt import Interrupted
 from zspring.parameter_sets import read_set
 
 from linear import PUBLISHED, LinearPantograph, ZSpringLinear
@@ -254,6 +257,38 @@ def test_an_interrupted_search_goes_on_to_the_same_result(measurement, tmp_path)
     with Fmu() as model:
         broken, whole = (read_set(tmp_path / f"{name}/fitted.ssv", model) for name in ("broken", "whole"))
     assert broken == whole
+
+
+@pytest.mark.parametrize("fits", [1, 2, 3])
+def test_ctrl_c_in_the_last_jacobian_writes_nothing_and_keeps_the_search(tmp_path, monkeypatch, fits):
+    """Answers are NaN from Ctrl-C on, so that standard errors from such a Jacobian would mean nothing.
+
+    There are three fits: from the start values, from the best of the search, and that of all points.
+    """
+    values, linear = linear_pantograph("DSA-380")
+    points = {(0.25, float(f)): linear.receptance(f) for f in np.arange(1.0, 15.0)}
+    write_measurement(tmp_path / "bench.csv", points)
+    free = "".join(f"{key} = {{ start = {values[key]}, min = 1, max = 40000 }}\n" for key in ("m1", "k2"))
+    text = 'model = "linear"\n[[measurement]]\nfile = "bench.csv"\n[search]\ngenerations = 2\n[free]\n'
+    (tmp_path / "fit.toml").write_text(text + free)
+    calls = []
+
+    def fit_until_ctrl_c(*arguments):
+        calls.append(fit(*arguments))
+        if len(calls) == fits:
+            os.kill(os.getpid(), signal.SIGINT)
+        return calls[-1]
+
+    out = tmp_path / "out"
+    with Fmu() as model:
+        settings = read_settings(tmp_path / "fit.toml", model)
+        with monkeypatch.context() as patched:
+            patched.setattr(run, "fit", fit_until_ctrl_c)
+            with pytest.raises(Interrupted, match="the same command goes on after the global search"):
+                run.identify(model, settings, out, "png", JOBS)
+        assert sorted(path.name for path in out.iterdir()) == ["identify.log", "search.partial.jsonl"]
+        run.identify(model, settings, out, "png", JOBS)
+    assert (out / "fitted.ssv").exists() and not (out / "search.partial.jsonl").exists()
 
 
 def test_a_candidate_that_cannot_be_simulated_costs_a_penalty_and_no_more(fmu):

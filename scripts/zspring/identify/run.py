@@ -147,14 +147,19 @@ def _fit(problem: Problem, x: np.ndarray, name: str, stop, log: _Log) -> Fit:
     """Least squares from x (n,), with a progress bar."""
     with tqdm(desc=name, unit=" evaluations", disable=None) as bar:
 
-        def progress(cost: float) -> None:
+        def check() -> None:
             if stop.is_set():
                 raise Interrupted("interrupted; the same command goes on after the global search")
+
+        def progress(cost: float) -> None:
+            check()
             log.write(f"{name}: cost {cost:.6g}")
             bar.set_postfix_str(f"cost {cost:.4g}", refresh=False)
             bar.update()
 
-        return fit(problem, x, progress)
+        result = fit(problem, x, progress)
+        check()  # answers of the last Jacobian may be NaN
+        return result
 
 
 def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Value], path: Path) -> Path:
