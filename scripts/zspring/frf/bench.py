@@ -22,16 +22,18 @@ class FmuBench:
         self._parameters = {**parameters, **instance.variables.parse_assignments(["drive=Bench"])}
         self._time = 0.0
         self._frequency = 0.0
-        self.H, self.change, self.periods = 0j, 1.0, 0
+        self._forget()
 
     def start(self, frequency: float, acceleration: float) -> None:
         """From the static state at rest; frequency in Hz, peak acceleration in m/s2."""
         self._time, self._frequency = 0.0, frequency
+        self._forget()
         self.instance.start({**self._parameters, **_settings(frequency, acceleration)})
 
     def tune(self, frequency: float, acceleration: float) -> None:
         """Go over to another frequency (Hz) and peak acceleration (m/s2) without stopping."""
         self._frequency = frequency
+        self._forget()
         self.instance.set(_settings(frequency, acceleration))
 
     def run(self, periods: int) -> None:
@@ -53,6 +55,10 @@ class FmuBench:
         self.instance.start(self._parameters)
         self.instance.load(base64.b64decode(state["fmu"]))
         self._time = state["time"]
+
+    def _forget(self) -> None:
+        """The point before: its numbers would else be those of a point whose first step fails."""
+        self.H, self.change, self.periods = 0j, 1.0, 0
 
 
 def _settings(frequency: float, acceleration: float) -> dict[str, Value]:

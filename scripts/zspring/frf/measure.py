@@ -44,7 +44,7 @@ class FrfSettings:
 
 @dataclass(frozen=True)
 class FrfPoint:
-    """One point; H in m/N is NaN where nothing was measured."""
+    """One point; H in m/N and its change are NaN where nothing was measured, and where it failed."""
 
     amplitude: float  # m/s2
     frequency: float  # Hz
@@ -164,7 +164,8 @@ def settle(
     """
     counters = ("solver.steps", "solver.iterations", "solver.refinements")
     before = bench.instance.get(counters)
-    status, H = NOT_SETTLED, complex(math.nan, math.nan)
+    nothing = complex(math.nan, math.nan), math.nan
+    status, (H, change) = NOT_SETTLED, nothing
     try:
         bench.run(1 + LOOK_PERIODS)
         while status == NOT_SETTLED and bench.periods < settings.max_periods:
@@ -172,12 +173,12 @@ def settle(
                 return None
             last = bench.H
             bench.run(LOOK_PERIODS)
-            H = bench.H
+            H, change = bench.H, bench.change
             drift = abs(H - last) / abs(H) if H else 1.0
-            if bench.periods >= settings.min_periods and max(bench.change, drift) <= settings.tolerance:
+            if bench.periods >= settings.min_periods and max(change, drift) <= settings.tolerance:
                 status = SETTLED
     except StepDiscarded as error:
-        status = f"{FAILED}: {error}"
+        status, (H, change) = f"{FAILED}: {error}", nothing
     used = (after - earlier for earlier, after in zip(before, bench.instance.get(counters)))
     return FrfPoint(
         amplitude,
@@ -185,7 +186,7 @@ def settle(
         status,
         H,
         bench.periods,
-        bench.change,
+        change,
         *used,
         *bench.instance.get(["solver.iterations_max"]),
     )
