@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from zspring.errors import ZSpringError
+from zspring.options import opened
 
 from harness import bench_point
 
@@ -181,6 +183,23 @@ def test_points_beyond_the_stroke_are_left_out_and_marked(tmp_path):
     assert "2 left out" in out
 
 
+@pytest.mark.parametrize("through", ["bench", "inputs"])
+def test_a_point_that_fails_has_no_numbers(tmp_path, through):
+    """Neither its own nor those of the point before: only the smallest amplitude can be solved."""
+    settings = ["solver.tangent=Exact", "solver.max_iterations=1", "solver.tolerance=1e-13"]
+    hopeless = [word for setting in settings for word in ("--set", setting)]
+    points = ["--amplitudes", "0.05,4", "--frequencies", "4,8", "--jobs", "1", "--through", through]
+    _, err = zspring(tmp_path, "frf", *points, *hopeless, "--error-estimate", "--output", "out", status=1)
+    assert "2 of 4 points could not be solved" in err
+    *good, first, second = table(tmp_path / "out/frf.csv")
+    assert all(row["status"] == "settled" and row["H_re [m/N]"] for row in good)
+    for row in first, second:
+        assert row["status"].startswith("failed: ") and row["periods"] == "0"
+        for name in ("H_re [m/N]", "H_im [m/N]", "magnitude [m/N]", "change", "error_estimate"):
+            assert row[name] == "", name
+    assert (tmp_path / "out/frf.png").read_bytes().startswith(PNG)
+
+
 def test_dynamic_stiffness_is_the_inverse_of_receptance(tmp_path):
     zspring(tmp_path, "frf", *SMALL, "--quantity", "stiffness", "--output", "out")
     for row in table(tmp_path / "out/frf.csv"):
@@ -248,6 +267,13 @@ def test_simulate_gives_what_the_fmu_gives(pantograph, tmp_path):
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-15)
 
 
+def test_warnings_of_the_fmu_are_told_when_the_command_fails(capsys):
+    with pytest.raises(ZSpringError), opened(None) as fmu:
+        fmu.warnings.append("the spring is slack")
+        raise ZSpringError("no table")
+    assert capsys.readouterr().err == "the FMU warns: the spring is slack\n"
+
+
 def test_info_lists_every_variable_of_the_catenary(fmu_catenary, tmp_path):
     out, _ = zspring(tmp_path, "info", "--catenary")
     assert set(fmu_catenary.variables) <= {line.split()[0] for line in out.splitlines()}
@@ -292,6 +318,9 @@ def test_info_lists_every_variable(fmu, tmp_path):
         (["simulate", "--input", "absent.csv"], ["absent.csv"]),
         (["simulate", "--step", "0"], ["0"]),
         (["simulate", "--stop", "-1"], ["-1"]),
+        (["simulate", "--step", "inf"], ["by inf s", "step above 0", "finite"]),
+        (["simulate", "--step", "nan"], ["by nan s", "step above 0", "finite"]),
+        (["simulate", "--stop", "inf"], ["to inf s", "stop", "above the start", "finite"]),
         (["info", "zspring.x"], ["zspring.x"]),
         (["info", "--catenary", "--fmu", "some.fmu"], ["some.fmu", "--catenary"]),
         (["fly"], ["fly"]),

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import ctypes
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +17,9 @@ from fmpy import read_model_description, simulate_fmu
 from pathsim import Connection, Simulation
 from pathsim.blocks import Scope, Source
 from pathsim_fmi import CoSimulationFMU
-from zspring.fmu import installed_fmu
+from zspring import export
+from zspring.errors import ZSpringError
+from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
 
 from client_runs import RUNS, Run
 
@@ -114,6 +117,31 @@ def test_ecos_simulates(run: Run, tmp_path):
                 rows.append([simulation.get_real(f"model::{name}") for name in run.outputs])
             simulation.terminate()
     run.check(np.array(rows))
+
+
+@pytest.mark.parametrize("options", [[], ["--plain"]])
+def test_the_package_is_never_exported_into_itself(tmp_path, monkeypatch, options):
+    """The package's FMUs in a folder of the test's, as copies."""
+    for model in (PANTOGRAPH, CATENARY):
+        shutil.copy(installed_fmu(model), tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    monkeypatch.setattr(export, "installed_fmu", lambda model: tmp_path / f"{model}.fmu")
+    with pytest.raises(ZSpringError, match=f"FOLDER {tmp_path}: .*the package's own .*; give another folder"):
+        export.export.main([*options, str(tmp_path)], standalone_mode=False)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_an_export_that_fails_keeps_the_file_there(tmp_path, monkeypatch):
+    def fail(fmu: Fmu, path: Path) -> None:
+        path.write_bytes(b"half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(export, "copy_without_enumerations", fail)
+    (tmp_path / "ZSpringPantograph.fmu").write_bytes(b"whole")
+    with pytest.raises(OSError, match="disk full"):
+        export.export.main(["--plain", str(tmp_path)], standalone_mode=False)
+    (kept,) = tmp_path.iterdir()
+    assert kept.name == "ZSpringPantograph.fmu" and kept.read_bytes() == b"whole"
 
 
 def test_exported_fmus_are_those_of_the_package(tmp_path):

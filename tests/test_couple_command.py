@@ -8,12 +8,13 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from zspring.cli import main
 from zspring.couple.journey import Journey
-from zspring.couple.result import read_result, write_result
+from zspring.couple.result import columns, read_result, write_result
 from zspring.couple.run import LineRun
 from zspring.couple.schemes import Coupling
 from zspring.couple.system import System
@@ -89,6 +90,24 @@ def test_a_file_has_all_that_the_result_has(made, tmp_path, suffix):
     assert again.friction_bound == pytest.approx([0.25, 0.4])
 
 
+@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+def test_a_file_has_the_positions_of_the_supports(made, tmp_path, suffix):
+    """Those beyond 1 km too, and those that no short decimal number gives."""
+    positions = np.array([60.0, 3 * 54.3])
+    for position in (positions, positions + 1234.5678):
+        path = tmp_path / f"line.{suffix}"
+        write_result(replace(made, support_position=position), path)
+        assert read_result(path).support_position == pytest.approx(position, rel=1e-9)
+    assert "support uplift at 60 m [m]" in columns(made)
+
+
+def test_a_file_that_is_no_text_is_refused(tmp_path):
+    path = tmp_path / "line.csv"
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ZSpringError, match="line.csv: no text in UTF-8"):
+        read_result(path)
+
+
 def test_a_file_of_something_else_is_refused(tmp_path):
     path = tmp_path / "other.csv"
     path.write_text("# elapsed: 1 s\ntime [s],position 1 [m]\n0,1\n")
@@ -141,6 +160,11 @@ def test_steps_are_compared(zspring, tmp_path):
         (["--coupling", "jacobi", "--drive", "Force"], "needs drive Wire"),
         (["--line", "nowhere"], "nowhere: no such file, and no set of that name"),
         (["--step", "-1"], "step = -1 s: must be above 0"),
+        (
+            ["--compare-steps", "--speed", "180", "--stop", "90"],
+            "stop = 90 m: with --compare-steps must be at least 90.25 m, one step of 0.005 s more than a "
+            "span of 60 m after the start, 30 m",
+        ),
     ],
 )
 def test_bad_settings_get_one_line(zspring, tmp_path, arguments, message):

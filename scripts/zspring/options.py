@@ -93,11 +93,13 @@ def output_option(default: str = "", described: str = ""):
 
 @contextmanager
 def opened(path: Path | None) -> Iterator[Fmu]:
-    """The FMU for one command, which tells at its end what the FMU warned of."""
+    """The FMU for one command, which tells at its end, be it a failure, what the FMU warned of."""
     with Fmu(path) as fmu:
-        yield fmu
-        for warning in fmu.warnings:
-            print(f"the FMU warns: {warning}", file=sys.stderr)
+        try:
+            yield fmu
+        finally:
+            for warning in fmu.warnings:
+                print(f"the FMU warns: {warning}", file=sys.stderr)
 
 
 def chosen_parameters(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -18,17 +19,18 @@ def write_head(file: TextIO, head: Mapping[str, str], columns: Sequence[str]) ->
     csv.writer(file, lineterminator="\n").writerow(columns)
 
 
+def read_head(path: Path) -> dict[str, str]:
+    """Values by key of the lines "# key: value" at the head of a file."""
+    with open(path, encoding="utf-8") as file:
+        lines = [line[1:].partition(":") for line in itertools.takewhile(lambda line: line[0] == "#", file)]
+    return {key.strip(): value.strip() for key, _, value in lines}
+
+
 def read_table(path: Path) -> tuple[dict[str, str], list[dict[str, str]]]:
     """Head, and rows by column name, of a CSV file, without a last line that was not written to its end."""
-    head, lines = {}, []
     with open(path, encoding="utf-8", newline="") as file:
-        for line in file:
-            if line.startswith("#"):
-                key, _, value = line[1:].partition(":")
-                head[key.strip()] = value.strip()
-            elif line.endswith("\n"):
-                lines.append(line)
-    return head, list(csv.DictReader(lines))
+        lines = [line for line in file if line.endswith("\n") and not line.startswith("#")]
+    return read_head(path), list(csv.DictReader(lines))
 
 
 def read_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:

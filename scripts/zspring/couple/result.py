@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ZSpringError, missing_extra
-from ..tables import finite_number, read_rows, write_head
+from ..tables import finite_number, read_head, read_rows, write_head
 
 _SUPPORT = re.compile(r"support uplift at (\S+) m")
 
@@ -56,7 +56,7 @@ def _columns(result: LineResult) -> Iterator[tuple[str, np.ndarray]]:
         yield f"moment beta {i + 1} [N.m]", result.moment[:, i, 1]
     yield "slack droppers", result.slack_droppers
     for position, uplift in zip(result.support_position, result.support_uplift.T):
-        yield f"support uplift at {position:g} m [m]", uplift
+        yield f"support uplift at {position:.10g} m [m]", uplift
 
 
 def write_result(result: LineResult, path: Path) -> None:
@@ -101,18 +101,11 @@ def read_result(path: Path) -> LineResult:
 
 
 def _read_csv(path: Path) -> tuple[dict[str, str], dict[str, np.ndarray]]:
-    head = {}
-    with open(path, encoding="utf-8") as file:
-        for line in file:
-            if not line.startswith("#"):
-                break
-            key, _, value = line[1:].partition(":")
-            head[key.strip()] = value.strip()
     names, rows = read_rows(path)
     numbers = [
         [finite_number(path, line, name, cell) for name, cell in zip(names, row)] for line, row in rows
     ]
-    return head, dict(zip(names, np.array(numbers).reshape(-1, len(names)).T))
+    return read_head(path), dict(zip(names, np.array(numbers).reshape(-1, len(names)).T))
 
 
 def _arrow():

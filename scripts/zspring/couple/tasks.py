@@ -60,7 +60,18 @@ def run_and_write(system: System, folder: Path, suffix: str, parquet: bool) -> N
 
 
 def compare_and_write(system: System, folder: Path, suffix: str) -> None:
-    """Compare communication steps; write steps.csv and the figure steps.<suffix>."""
+    """Compare communication steps; write steps.csv and the figure steps.<suffix>.
+
+    Raises ZSpringError where the run is too short for it.
+    """
+    extent = system.extent
+    journey = extent.complete(system.journey, len(system.pantographs))
+    least = journey.start + extent.span + journey.speed * max(STEPS)
+    if journey.stop < least:
+        raise ZSpringError(
+            f"stop = {journey.stop:g} m: with --compare-steps must be at least {least:g} m, one step of "
+            f"{max(STEPS):g} s more than a span of {extent.span:g} m after the start, {journey.start:g} m"
+        )
     bar = tqdm(total=len(COMPARED) * len(STEPS), unit=" runs", disable=None)
 
     def one(step: float, coupling: Coupling, of_line: Parameters, of_pantographs: Parameters) -> LineResult:
@@ -73,7 +84,7 @@ def compare_and_write(system: System, folder: Path, suffix: str) -> None:
     rows, stopped, speed = [], None, f"{3.6 * system.journey.speed:g} km/h"
     try:
         with bar:
-            for row in compare_steps(one, system.coupling, system.extent.span):
+            for row in compare_steps(one, system.coupling, extent.span):
                 rows.append(row)
     except (Interrupted, ZSpringError) as error:
         stopped = error

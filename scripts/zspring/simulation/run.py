@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -47,9 +48,10 @@ def simulate(
         stop_time = inputs[0][-1] if inputs else float(experiment.stopTime)
     if inputs and stop_time > inputs[0][-1]:
         raise ZSpringError(f"--stop {stop_time:g} s: the input file ends at {inputs[0][-1]:g} s")
-    if not (step > 0 and stop_time > start_time):
+    if not (0 < step < math.inf and start_time < stop_time < math.inf):
         raise ZSpringError(
-            f"from {start_time:g} s to {stop_time:g} s by {step:g} s: there is nothing to simulate"
+            f"from {start_time:g} s to {stop_time:g} s by {step:g} s: the stop must be above the start and "
+            "the step above 0, both finite"
         )
 
     # The last step is shorter where the duration is no multiple of the step.
