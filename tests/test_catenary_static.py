@@ -167,6 +167,29 @@ def test_any_line_has_the_statics_of_an_independent_one(catenary, name, force):
     assert slack > 0 or force == 120
 
 
+def test_a_force_at_an_anchor_moves_nothing_and_beside_it_little(catenary):
+    """In the first and the last element, whose ends are held."""
+    line = Line(spans=2)
+    for place in (0.0, 1e-6, 0.1, 0.5, 0.9):
+        for x in (place, line.length - place):
+            found = under(catenary, line, {x: 120.0})
+            u, _, _ = line.equilibrium([x], [120.0])
+            height = (line.wires[0].at(x) @ (u + line.shape))[0]
+            assert found["pantograph[1].wire_height"] == pytest.approx(height, rel=1e-7, abs=1e-10)
+            assert found["support.uplift[1]"] == found["support.uplift[3]"] == 0.0
+            assert abs(height) < 0.005
+
+
+def test_a_force_that_runs_up_to_the_anchor_leaves_it_where_it_is(catenary):
+    line = Line(spans=2)
+    p = under(catenary, line, {90.0: 120.0}, **{"pantograph[1].speed": 50.0})
+    found = p.run(0.001, 600, ["pantograph[1].wire_height", "support.uplift[3]"])
+    assert p["pantograph[1].x"] == pytest.approx(line.length, rel=1e-9)
+    assert np.all(found[:, 1] == 0.0)
+    assert found[-1, 0] == pytest.approx(0.0, abs=1e-8)
+    assert np.all(np.abs(np.diff(found[:, 0])) < 1e-3)
+
+
 def test_the_line_has_the_length_of_its_spans_and_rests_at_its_static_height(catenary):
     line = Line(spans=7)
     p = under(catenary, line, {123.4: 0.0})

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import pytest
 from fmpy.fmi2 import fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated
 
@@ -31,7 +34,33 @@ def test_an_unsolvable_step_is_discarded_and_leaves_the_state_as_it_was(model, i
 def test_the_last_successful_time_is_that_before_the_step(model, instance):
     p, _, _ = discarded(instance, model)
     assert p.slave.getRealStatus(fmi2LastSuccessfulTime) == 0.002
+
+
+def test_the_fmu_asks_for_the_end_where_the_line_ends_or_where_a_step_is_repeated_in_vain(model, instance):
+    """fmpy repeats a discarded step until it does; a host that shortens the step is not asked."""
+    p, _, _ = discarded(instance, model)
+    assert p.slave.getBooleanStatus(fmi2Terminated) is (model is CATENARY)  # whose pantograph leaves the line
+    assert refusal(p.slave.doStep, p.time, 0.09) == fmi2Discard
+    assert p.slave.getBooleanStatus(fmi2Terminated) is (model is CATENARY)
+    assert refusal(p.slave.doStep, p.time, 0.09) == fmi2Discard
+    assert p.slave.getBooleanStatus(fmi2Terminated) is True
+    p[model.force] = 100.0
+    p.step(0.001)
     assert p.slave.getBooleanStatus(fmi2Terminated) is False
+
+
+def test_fmpy_ends_at_the_end_of_the_line(fmu_catenary):
+    """In a process of its own: fmpy knows one logger, and that of instances before is gone."""
+    script = f"""
+from fmpy import simulate_fmu
+start = {{"line.spans": 2, "pantograph[1].start": 90, "pantograph[1].speed": 50, "pantograph[1].force": 120}}
+result = simulate_fmu({str(fmu_catenary.path)!r}, stop_time=2, output_interval=0.01, start_values=start,
+                      output=["pantograph[1].x"])
+print(result["time"][-1], result["pantograph[1].x"][-1])
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert [float(x) for x in done.stdout.splitlines()[-1].split()] == pytest.approx([0.6, 120.0])
 
 
 def test_the_reason_is_logged_once(model, instance):

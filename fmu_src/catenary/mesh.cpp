@@ -15,10 +15,11 @@ void check_droppers(const Parameters& p) {
     const double x = p.dropper.position[i];
     const double low = last + least_distance, high = p.span - least_distance;
     if (x < low || x > high) {
-      char text[160];
+      char text[240];
       std::snprintf(text, sizeof text,
-                    "dropper.position[%d] = %.10g m: must be at least %.10g m and at most %.10g m", i + 1, x, low,
-                    high);
+                    "dropper.position[%d] = %.10g m: must be at least %.10g m and at most %.10g m, after the dropper "
+                    "before it and within line.span = %.10g m",
+                    i + 1, x, low, high, p.span);
       throw ParameterError(text);
     }
     last = x;
@@ -54,6 +55,9 @@ Place Mesh::at(double position) const {
   place.value << r * r * (1 + 2 * s), l * s * r * r, s * s * (1 + 2 * r), -l * s * s * r;
   place.slope << -6 * s * r / l, r * (1 - 3 * s), 6 * s * r / l, s * (1 - 3 * r);
   place.curvature << (12 * s - 6) / (l * l), (6 * s - 4) / l, (6 - 12 * s) / (l * l), (6 * s - 2) / l;
+  // The anchors do not move, whatever acts on them: there the wire answers with its slope only.
+  if (place.station == 0) place.value[0] = place.slope[0] = place.curvature[0] = 0;
+  if (place.station + 2 == stations()) place.value[2] = place.slope[2] = place.curvature[2] = 0;
   return place;
 }
 

@@ -57,6 +57,7 @@ bool Simulation::stays_on_line(const CommunicationStep& step, AdvanceFailure& fa
       const Passage here = step.at(i, k / n * step.length());
       if (here.force == 0 || line_.mesh.contains(here.position)) continue;
       failure.time = k / n * step.length();
+      failure.at_end = true;
       std::snprintf(
           failure.text, sizeof failure.text,
           "pantograph[%d].x = %.10g m: must be within the line, 0 to %.10g m, while its force is %.10g N", i + 1,

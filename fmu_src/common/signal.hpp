@@ -48,6 +48,7 @@ inline constexpr char overflow[] = "values overflow: parameters or inputs are to
 struct AdvanceFailure {
   double time = 0;      // s since the begin of the communication step
   char text[256] = "";  // for the log
+  bool at_end = false;  // the run can go no further
 };
 
 // A communication step of more internal steps would take hours: its length is a mistake.

@@ -327,9 +327,9 @@ fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind, fmi2Integ
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
   if (kind != fmi2Terminated) return no_status(c, "fmi2GetBooleanStatus");
-  return guarded(c, after_step, "fmi2GetBooleanStatus", [&](Instance&) {
+  return guarded(c, after_step, "fmi2GetBooleanStatus", [&](Instance& i) {
     need(value, 1, "value");
-    *value = fmi2False;  // the FMU never asks the host to stop
+    *value = i.wants_to_end();
     return fmi2OK;
   });
 }

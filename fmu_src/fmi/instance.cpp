@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -19,7 +20,8 @@ template <class... Values>
 // "m1 = -1 kg"
 std::string described(const Variable& v, double x) {
   char text[160];
-  std::snprintf(text, sizeof text, "%s = %.10g%s%s", v.name, x, *v.unit ? " " : "", v.unit);
+  const bool has_unit = *v.unit && std::strcmp(v.unit, "1") != 0;
+  std::snprintf(text, sizeof text, "%s = %.10g%s%s", v.name, x, has_unit ? " " : "", has_unit ? v.unit : "");
   return text;
 }
 
@@ -59,7 +61,8 @@ void Instance::reset() {
     if (v.is_input()) v.signal(inputs_).value = v.start;
   experiment_ = {};
   time_ = 0;
-  stepped_ = false;
+  stepped_ = wants_to_end_ = false;
+  discarded_length_ = 0;
   simulation_.reset();
   outputs_.reset();
 }
@@ -126,6 +129,7 @@ void Instance::set(const fmi2ValueReference references[], size_t n, Type type, c
     check_settable(v);
     check_value(v, values[i]);
   }
+  discarded_length_ = 0;
   for (size_t i = 0; i < n; ++i) {
     const Variable& v = variables[references[i]];
     if (v.is_parameter())
@@ -208,12 +212,16 @@ fmi2Status Instance::step(double from, double length) {
   outputs_.reset();
   if (!s.advance(parameters_, inputs_, length, failure)) {
     phase = StepFailed;
+    wants_to_end_ = failure.at_end || length == discarded_length_;
+    discarded_length_ = length;
     std::snprintf(text, sizeof text, "t = %.10g s: %s. The state is that of %.10g s", from + failure.time,
                   failure.text, time_);
     log.write(fmi2Discard, Category::logStatusDiscard, text);
     return fmi2Discard;
   }
   stepped_ = true;
+  wants_to_end_ = false;
+  discarded_length_ = 0;
   phase = StepComplete;
   time_ = to;
   if (log.enabled(Category::logSolver)) {
@@ -290,6 +298,8 @@ void Instance::restore(const std::vector<double>& numbers) {
   bool has_simulation;
   read(has_simulation);
   outputs_.reset();
+  wants_to_end_ = false;
+  discarded_length_ = 0;
   // Hosts that iterate restore at every step: a model of the same parameters is kept, only its state is replaced.
   if (!has_simulation || (simulation_ && !is_model_of(parameters_))) simulation_.reset();
   if (has_simulation) simulation().visit_state(read);

@@ -59,6 +59,9 @@ class Instance {
 
   fmi2Status step(double from, double length);
   double last_successful_time() const { return time_; }
+  // After a discarded step: it went where the run ends, or was tried twice. Some hosts, fmpy among them, repeat a
+  // discarded step for ever unless the FMU asks for the end.
+  bool wants_to_end() const { return wants_to_end_; }
 
   // Everything but the log settings, as numbers.
   std::vector<double> snapshot();
@@ -82,6 +85,8 @@ class Instance {
   Experiment experiment_;
   double time_;
   bool stepped_;
+  bool wants_to_end_;
+  double discarded_length_;  // s, of the last step if that was discarded; else 0
   std::optional<Simulation> simulation_;
   Parameters modelled_;             // of simulation_
   std::optional<Outputs> outputs_;  // of the present state, made when asked for
