@@ -9,11 +9,11 @@ import threading
 import time
 import uuid
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 
 import cloudpickle
-from distributed import Client, Future, KilledWorker, get_worker
+from distributed import CancelledError, Client, Future, KilledWorker, TimeoutError, get_worker
 from distributed.diagnostics.plugin import WorkerPlugin
 
 import zspring
@@ -111,33 +111,27 @@ class Cluster:
         try:
             while under_way and not stop.is_set():
                 try:
-                    done = [finished.get(timeout=LOOK)]
+                    future = finished.get(timeout=LOOK)
                 except queue.Empty:
                     last_sign = self._sign_of_life(last_sign)
                     continue
-                while not finished.empty():
-                    done.append(finished.get())
+                results = _results(future)
+                if results is None:
+                    finished.put(future)
+                    last_sign = self._sign_of_life(last_sign)
+                    continue
                 last_sign = time.monotonic()
-                for future, results in zip(done, self._gather(done)):
-                    numbers = under_way.pop(future)
-                    if isinstance(results, list):
-                        count += len(results)
-                        seconds += sum(result["seconds"] for result in results)
-                    else:
-                        results = [results] * len(numbers)
-                    submit()
-                    yield from zip(numbers, results)
+                numbers = under_way.pop(future)
+                if isinstance(results, list):
+                    count += len(results)
+                    seconds += sum(result["seconds"] for result in results)
+                else:
+                    results = [results] * len(numbers)
+                submit()
+                yield from zip(numbers, results)
         finally:
             with suppress(OSError):
                 self.client.cancel(list(under_way))
-
-    def _gather(self, done: Sequence[Future]) -> list[list[Result] | Result]:
-        """Results of finished tasks: those of its cases, or the one of a task that failed."""
-        if any(future.cancelled() for future in done):
-            raise ZSpringError("the scheduler is gone")
-        good = [future for future in done if future.status == "finished"]
-        values = dict(zip(good, self.client.gather(good)))
-        return [values[future] if future in values else _failure(future) for future in done]
 
     def _sign_of_life(self, last: float) -> float:
         """Time (s) of the last sign of life: now if there are workers. ZSpringError after the timeout."""
@@ -183,6 +177,21 @@ def _run_cases(study: str) -> Callable[[list[Case]], list[Result]]:
         return [plugin.run(case) for case in cases]
 
     return run_cases
+
+
+def _results(future: Future) -> list[Result] | Result | None:
+    """Results of a finished task's cases, or the one of a task that failed.
+
+    None where they were lost with their worker before they were fetched: another one will make them again.
+    """
+    try:
+        return future.result(timeout=LOOK)
+    except TimeoutError:
+        return None
+    except CancelledError:
+        raise ZSpringError("the scheduler is gone") from None
+    except Exception:
+        return _failure(future)
 
 
 def _failure(future: Future) -> Result:
