@@ -37,7 +37,8 @@ ZIG = "python-zig c++"  # from the package ziglang, for systems without a C++ co
 
 PACKAGE_SOURCES = ["CMakeLists.txt", "LICENSE", "README.md", "modelDescription.xml", "pyproject.toml",
                    "fmu_src", "resources", "scripts/zspring"]
-PROBE_SOURCES = ["CMakeLists.txt", "modelDescription.xml", "fmu_src", "tests/native"]
+PROBE_SOURCES = ["CMakeLists.txt", "modelDescription.xml", "resources/catenary/modelDescription.xml", "fmu_src",
+                 "tests/native"]
 
 # Prints the requirements in pyproject.toml, one a line; runs in .venv, whose pip has tomli for Python 3.10.
 READ_REQUIREMENTS = """
