@@ -252,6 +252,14 @@ def test_simulate_moves_the_wire_by_a_file(fmu, tmp_path):
     assert (tmp_path / "out/simulation.png").read_bytes().startswith(PNG)
 
 
+def test_simulate_tells_which_inputs_the_drive_does_not_use(tmp_path):
+    (tmp_path / "wire.csv").write_text("time [s],wire_height [mm],uplift.head [N]\n0,0,0\n0.1,1,0\n")
+    for drive, told in ("Force", True), ("Wire", False):
+        _, err = zspring(tmp_path, "simulate", "--drive", drive, "--input", "wire.csv", "--output", drive)
+        assert ("wire_height: has no effect with drive Force; see --drive" in err) is told
+        assert "uplift.head" not in err
+
+
 def test_simulate_gives_what_the_fmu_gives(pantograph, tmp_path):
     (tmp_path / "force.csv").write_text("time [s],contact_force [N]\n0,120\n0.1,130\n0.2,110\n")
     zspring(tmp_path, "simulate", "--input", "force.csv", "--step", "0.01", "--output", "out")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import sys
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -19,6 +20,8 @@ from ..tables import write_head
 from ..variables import Value, text, with_unit
 from .inputs import interpolate
 from .plot import simulation_figure
+
+DRIVEN_BY = {"Force": "contact_force", "Displacement": "head_displacement", "Wire": "wire_height", "Bench": None}
 
 Inputs = tuple[np.ndarray, Mapping[str, np.ndarray]]  # time (n,) in s, values (n,) by name
 
@@ -63,6 +66,9 @@ def simulate(
         feed = _Feed(instance, inputs, times, interpolation)
         instance.start(parameters, feed.values(0), start_time)
         used = dict(zip(names, instance.get(names)))
+        drive = text(fmu.variables["drive"], used["drive"])
+        for name in set(DRIVEN_BY.values()) & set(inputs[1] if inputs else ()) - {DRIVEN_BY[drive]}:
+            print(f"{name}: has no effect with drive {drive}; see --drive", file=sys.stderr)
         folder.mkdir(parents=True, exist_ok=True)
         file = stack.enter_context(open(path, "w", encoding="utf-8", newline=""))
         stop = stack.enter_context(stop_on_interrupt())
@@ -80,7 +86,6 @@ def simulate(
                     "the same command begins anew"
                 )
 
-    drive = text(fmu.variables["drive"], used["drive"])
     title = f"Pantograph, drive {drive}"
     if fmu.variables.synthetic(used):
         title += "; Z-spring parameters synthetic"
