@@ -143,9 +143,10 @@ def test_steps_are_compared(zspring, tmp_path):
         ("implicit", 5e-4),
         *(("explicit", step) for step in (5e-4, 1e-3, 2e-3, 5e-3)),
         *(("implicit", step) for step in (1e-3, 2e-3, 5e-3)),
+        *(("jacobi", step) for step in (5e-4, 1e-3, 2e-3, 5e-3)),
     ]
     errors = {(row["scheme"], row["step [s]"]): float(row["rms [N]"]) for row in rows}
-    assert errors["implicit", "0.001"] < 0.5 < errors["explicit", "0.001"]
+    assert errors["implicit", "0.001"] < 0.5 < errors["explicit", "0.001"] < 3 < errors["jacobi", "0.001"]
     assert "reference" in out and "written: out/steps.csv out/steps.png" in out
 
 

@@ -11,7 +11,11 @@ from .result import LineResult
 from .schemes import Coupling
 
 STEPS = (0.5e-3, 1e-3, 2e-3, 5e-3)  # s
-COMPARED = ("explicit", "implicit")
+
+
+def compared(drive: str) -> tuple[str, ...]:
+    """The schemes that know this drive of the pantographs."""
+    return ("explicit", "implicit", "jacobi") if drive == "Wire" else ("explicit", "implicit")
 
 
 @dataclass(frozen=True)
@@ -32,9 +36,8 @@ def compare_steps(
     coupling: Coupling,
     travelled_from: float,
     steps: Sequence[float] = STEPS,
-    schemes: Sequence[str] = COMPARED,
 ) -> Iterator[Comparison]:
-    """Errors of the schemes at these communication steps, against implicit coupling at the smallest one.
+    """Errors of all schemes at these communication steps, against implicit coupling at the smallest one.
 
     run             makes a run: step in s, coupling, more parameters of the catenary and of the pantographs
     travelled_from  distance from the start at which the comparison begins, m
@@ -58,7 +61,7 @@ def compare_steps(
         return result, Comparison(scheme, step, rms, *numbers)
 
     reference, first = compare("implicit", fine, None)
-    cases = [(scheme, step) for scheme in schemes for step in steps if (scheme, step) != ("implicit", fine)]
+    cases = [(scheme, step) for scheme in compared(coupling.drive) for step in steps if (scheme, step) != ("implicit", fine)]
     yield first
     for case in cases:
         yield compare(*case, reference)[1]

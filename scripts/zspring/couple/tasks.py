@@ -15,7 +15,7 @@ from ..figures import save
 from ..interrupt import Interrupted
 from ..tables import write_head
 from ..variables import Value, parse
-from .compare import COMPARED, STEPS, compare_steps, comparison_table
+from .compare import STEPS, compare_steps, compared, comparison_table
 from .plot import comparison_figure, line_figure
 from .result import LineResult, write_result
 from .run import LineRun
@@ -72,7 +72,7 @@ def compare_and_write(system: System, folder: Path, suffix: str) -> None:
             f"stop = {journey.stop:g} m: with --compare-steps must be at least {least:g} m, one step of "
             f"{max(STEPS):g} s more than a span of {extent.span:g} m after the start, {journey.start:g} m"
         )
-    bar = tqdm(total=len(COMPARED) * len(STEPS), unit=" runs", disable=None)
+    bar = tqdm(total=len(compared(system.coupling.drive)) * len(STEPS), unit=" runs", disable=None)
 
     def one(step: float, coupling: Coupling, of_line: Parameters, of_pantographs: Parameters) -> LineResult:
         journey = replace(system.journey, step=step)
