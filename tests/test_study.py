@@ -19,10 +19,11 @@ import cloudpickle
 import dask
 import numpy as np
 import pytest
+from distributed import Client
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
 from zspring.receptance import receptance
-from zspring.study.cluster import LOST
+from zspring.study.cluster import LOST, _results
 from zspring.study.connection import connected
 from zspring.study.design import make_cases
 from zspring.study.quantities import FrfQuantity, StaticQuantity, column
@@ -340,6 +341,16 @@ def test_a_study_without_workers_or_scheduler_ends_and_can_go_on(cluster, tmp_pa
     cluster.scheduler.kill()
     _, err = zspring(tmp_path, *arguments, status=1)
     assert cluster.address in err and "no answer in 4 s" in err
+
+
+def test_results_that_are_lost_with_their_worker_are_not_waited_for_in_vain(cluster):
+    with Client(cluster.address) as client:
+        future = client.submit(lambda: [{"seconds": 0.0}])
+        assert _results(future) == [{"seconds": 0.0}]
+        for worker in cluster.workers:
+            worker.kill()
+            worker.wait()
+        assert _results(future) is None
 
 
 class Poison:
