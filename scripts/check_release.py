@@ -55,7 +55,7 @@ def installed(rows: list[tuple[str, int, int, float]]) -> bool:
     (wheel,) = (ROOT / "dist").glob("*.whl")
     shutil.rmtree(INSTALLED, ignore_errors=True)
     done = run(PYTHON, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", INSTALLED, wheel) == 0
-    found = f"import zspring, pathlib; assert pathlib.Path({str(INSTALLED)!r}) in pathlib.Path(zspring.__file__).parents"
+    found = f"import pathlib, zspring; assert pathlib.Path(zspring.__file__).parent.parent.samefile({str(INSTALLED)!r})"
     done = done and run(PYTHON, "-c", found, PYTHONPATH=str(INSTALLED)) == 0
     rows.append(("installation of the wheel", int(done), int(not done), time.monotonic() - begin))
     return done

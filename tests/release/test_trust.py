@@ -1,4 +1,4 @@
-"""The figures of docs/trust.md come out of the release FMUs too; the page with theirs goes to build/release/trust.md."""
+"""The figures of docs/trust.md come out of the release FMUs; the page with the new ones is build/release/trust.md."""
 
 from __future__ import annotations
 

@@ -19,7 +19,10 @@ from .inputs import read_inputs
 
 
 @click.command()
-@click.option("--drive", help="What moves the head, as --set drive=...: Force, Displacement, Wire or Bench.  [default: Force]")
+@click.option(
+    "--drive",
+    help="What moves the head, as --set drive=...: Force, Displacement, Wire or Bench.  [default: Force]",
+)
 @parameters_option
 @set_option
 @click.option(
