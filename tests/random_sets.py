@@ -4,7 +4,7 @@ A set is drawn around the start values, by up to a factor 3, 1e3 or 1e6 in each 
 Either the FMU refuses it with one line, or it runs under jumping inputs and steps of many lengths; a step that it
 cannot make it discards with one line. Of what it calls good, here is checked that
 
-- every value is finite, energies and losses are not negative, a unilateral contact does not pull;
+- every value is finite, energies and losses are not negative, a unilateral contact does not pull, an anchor holds;
 - Newton's method has converged (sensible sets): the same run with a tolerance of 1e-13 gives the same values. The
   tolerance is one of forces relative to the largest, so where forces differ by ten orders of magnitude, or where a
   light head bounces on a rigid wire, the rest of it may move what is small: such sets outside the sensible are
@@ -80,6 +80,7 @@ class Pantograph:
     counters = ("solver.steps", "solver.refinements")
     iterates = True
     unilateral = (1, 3)  # drives
+    held = ()
 
     def affordable(self, rng: np.random.Generator) -> dict[str, float]:
         return {"solver.step": 10 ** rng.uniform(-4, -2), "bench.frequency": 10 ** rng.uniform(-1, 1.5)}
@@ -96,11 +97,12 @@ class Pantograph:
 
 @dataclass(frozen=True)
 class Catenary:
-    outputs = ("pantograph[1].wire_height", "pantograph[2].wire_velocity", "support.uplift[2]")
+    outputs = ("pantograph[1].wire_height", "pantograph[2].wire_velocity", "support.uplift[2]", "support.uplift[1]")
     forces = ("droppers.force_max",)
     counters = ("solver.steps",)
     iterates = False
     unilateral = ()
+    held = ("support.uplift[1]",)
 
     def affordable(self, rng: np.random.Generator) -> dict[str, float]:
         return {
@@ -118,7 +120,7 @@ class Catenary:
             for name, value in (
                 ("force", rng.uniform(0, 300)),
                 ("speed", rng.uniform(0, 70)),
-                ("position", length * rng.uniform(0.1, 0.9)),
+                ("position", length * np.clip(rng.uniform(-0.1, 1.1), 0, 1)),
             )
         }
 
@@ -205,6 +207,8 @@ def judge(instance: Instance, fmu: Fmu, seed: int, kind: str, tally: Tally) -> N
         fault("negative energy")
     if values.get("drive") in model.unilateral and (run.outputs[:, len(model.outputs)] < 0).any():
         fault("the contact pulls")
+    if run.outputs[:, [model.outputs.index(name) for name in model.held]].any():
+        fault("an anchor moves")
     if model.iterates:
         tested = run if kind == "sensible" else run_with(tolerance=1e-11, max_iterations=400)
         error = difference(model, tested, run_with(tolerance=1e-13, max_iterations=400))
