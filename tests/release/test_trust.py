@@ -49,6 +49,5 @@ def assert_flat_and_equal(rows: list[list[str]]) -> None:
             assert found[0] < SMALL_AND_LARGE[test.partition(":")[0]], test
 
 
-@pytest.mark.parametrize("model", [PANTOGRAPH, CATENARY])
 def test_any_order_of_calls_follows_the_rules(model, any_fmu):
     run_rules(model, any_fmu, 1000, 60, derandomize=False)
