@@ -33,8 +33,8 @@ class Hht {
   // not have them computed anew. Keeps the last few.
   const StepFactors& factors(double h);
 
-  // At rest in equilibrium under `loads`. Throws ParameterError where no equilibrium is found.
-  std::optional<LineState> at_rest(const Loads& loads);  // none where no set of slack droppers fits
+  // At rest in equilibrium under `loads`; none where no set of slack droppers fits.
+  std::optional<LineState> at_rest(const Loads& loads);
   LineState at_rest_variation(const Loads& dloads, const VectorXd& slack);  // slack: of the state at rest
   // From the loads `l0`, at its begin, to `l1`. False, with `s` without meaning, when no set of slack droppers
   // fits.

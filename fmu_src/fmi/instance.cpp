@@ -61,8 +61,8 @@ void Instance::reset() {
     if (v.is_input()) v.signal(inputs_).value = v.start;
   experiment_ = {};
   time_ = 0;
-  stepped_ = wants_to_end_ = false;
-  discarded_length_ = 0;
+  stepped_ = false;
+  forget_discard();
   simulation_.reset();
   outputs_.reset();
 }
@@ -220,8 +220,7 @@ fmi2Status Instance::step(double from, double length) {
     return fmi2Discard;
   }
   stepped_ = true;
-  wants_to_end_ = false;
-  discarded_length_ = 0;
+  forget_discard();
   phase = StepComplete;
   time_ = to;
   if (log.enabled(Category::logSolver)) {
@@ -298,8 +297,7 @@ void Instance::restore(const std::vector<double>& numbers) {
   bool has_simulation;
   read(has_simulation);
   outputs_.reset();
-  wants_to_end_ = false;
-  discarded_length_ = 0;
+  forget_discard();
   // Hosts that iterate restore at every step: a model of the same parameters is kept, only its state is replaced.
   if (!has_simulation || (simulation_ && !is_model_of(parameters_))) simulation_.reset();
   if (has_simulation) simulation().visit_state(read);

@@ -76,6 +76,7 @@ class Instance {
   const Variable& variable(unsigned reference, Type type) const;
   void check_settable(const Variable& v) const;
   Simulation& simulation();  // built anew where parameters or inputs changed before the first step
+  void forget_discard() { wants_to_end_ = false, discarded_length_ = 0; }
   bool is_model_of(const Parameters& p) const;
   template <class Visitor>
   void visit_values(Visitor&& f);

@@ -13,7 +13,7 @@ from zspring.fmu import CATENARY, PANTOGRAPH
 
 GROWTH = 1024  # KiB, of resident memory: what the C library keeps at hand
 SLACK = {"stress": 1, "random_sets": 5, "calls": 20}  # of counts, where 2 % is less
-SMALL_AND_LARGE = {PANTOGRAPH: 32, CATENARY: 4096}  # KiB, of an instance
+LARGEST = {PANTOGRAPH: 32, CATENARY: 4096}  # KiB, of an instance
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def assert_flat_and_equal(rows: list[list[str]]) -> None:
         else:
             assert found[-1] == 0, test  # with other results
         if "KiB each" in result:
-            assert found[0] < SMALL_AND_LARGE[test.partition(":")[0]], test
+            assert found[0] < LARGEST[test.partition(":")[0]], test
 
 
 def test_any_order_of_calls_follows_the_rules(model, any_fmu):
