@@ -19,7 +19,7 @@ UNBOUNDED = "HUGE_VAL"
 def enumerations(root):
     """{type name: ["1 Force", ...]}"""
     return {
-        t.get("name"): [f'{item.get("value")} {item.get("name")}' for item in t.find("Enumeration")]
+        t.get("name"): [f"{item.get('value')} {item.get('name')}" for item in t.find("Enumeration")]
         for t in root.iter("SimpleType")
     }
 
@@ -67,7 +67,7 @@ def main(source, out_dir):
     enums = enumerations(root)
     rows = [row(i, v, enums) for i, v in enumerate(root.find("ModelVariables"))]
     identifiers = dict.fromkeys(identifier_and_index(v.get("name"))[0] for v in root.find("ModelVariables"))
-    categories = [f'  X({c.get("name")})' for c in root.iter("Category")]
+    categories = [f"  X({c.get('name')})" for c in root.iter("Category")]
     table = [
         "// Generated from modelDescription.xml.",
         f'#define ZSPRING_GUID "{guid}"',

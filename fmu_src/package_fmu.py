@@ -81,13 +81,15 @@ def variable_tables(model: ET.Element) -> str:
             declared = typed.get("declaredType")
             start = typed.get("start", "")
             note = "; may be changed during the simulation" if variable.get("variability") == "tunable" else ""
-            rows.append([
-                variable.get("name"),
-                declared or typed.get("unit") or typed.tag,
-                items[declared][start] if declared and start else start,
-                bounds(typed),
-                variable.get("description", "") + note,
-            ])
+            rows.append(
+                [
+                    variable.get("name"),
+                    declared or typed.get("unit") or typed.tag,
+                    items[declared][start] if declared and start else start,
+                    bounds(typed),
+                    variable.get("description", "") + note,
+                ]
+            )
         # Leave out the columns that are empty in the whole table.
         header = ["Name", "Unit or type", "Start", "Allowed", "Meaning"]
         used = [i for i in range(len(header)) if any(row[i] for row in rows)]

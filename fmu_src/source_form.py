@@ -70,11 +70,7 @@ def build_description(identifier: str, sources: dict[str, bytes]) -> bytes:
 def source_form(identifier: str, model: str, generated: Path, eigen: Path) -> dict[str, bytes]:
     """All files of sources/, by their path in it."""
     sources = own_sources(model, generated)
-    return {
-        **sources,
-        **eigen_headers(sources, eigen),
-        "buildDescription.xml": build_description(identifier, sources),
-    }
+    return {**sources, **eigen_headers(sources, eigen), "buildDescription.xml": build_description(identifier, sources)}
 
 
 def list_sources(model_description: bytes, sources: dict[str, bytes]) -> bytes:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 from fmpy import extract
-from zspring.fmu import CATENARY, PANTOGRAPH, installed_fmu
 
 from harness import Fmu, Instance, Pantograph
 from models import MODELS, Model
+from zspring.fmu import CATENARY, PANTOGRAPH, installed_fmu
 
 
 @pytest.fixture(scope="session")

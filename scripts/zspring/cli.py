@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib.metadata import entry_points
 
 import click
 
@@ -14,13 +15,13 @@ from .frf.command import frf
 from .identify.command import identify
 from .info import info
 from .interrupt import Interrupted
-from .simulation.command import simulate
-from .studies.integrators.command import integrators
-from .studies.linearize.command import linearize
-from .studies.mechanism.command import mechanism
-from .studies.newton.command import newton
-from .studies.static.command import static
+from .linearize.command import linearize
+from .mechanism.command import mechanism
+from .simulate.command import simulate
+from .static.command import static
 from .study.command import study
+
+RESEARCH = ("newton", "integrators")  # commands of scripts/research, a package of its own
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -29,11 +30,24 @@ def commands() -> None:
     """DSA-380 pantograph with Z-spring head suspension, as an FMI 2.0 co-simulation FMU."""
 
 
-for command in (
-    *(frf, simulate, identify, info, export),
-    *(static, newton, integrators, mechanism, linearize, study, couple, en50318),
-):
+def research_command(name: str) -> click.Command:
+    """A command of the package in scripts/research, or one that tells how to install it."""
+    for found in entry_points(group="zspring.commands", name=name):
+        return found.load()
+    how = "in the clone, pip install ./scripts/research"
+
+    def refuse(**_) -> None:
+        raise ZSpringError(f"{name} is not installed: {how}")
+
+    anything = click.Argument(["arguments"], nargs=-1, type=click.UNPROCESSED)
+    settings = {"ignore_unknown_options": True}
+    return click.Command(name, settings, refuse, [anything], short_help=f"Not installed: {how}.", add_help_option=False)
+
+
+for command in (frf, simulate, identify, info, export, static, mechanism, linearize, study, couple, en50318):
     commands.add_command(command)
+for name in RESEARCH:
+    commands.add_command(research_command(name))
 
 
 def main() -> int:

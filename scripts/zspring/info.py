@@ -27,9 +27,7 @@ def variable_table(variables: Variables, names: Sequence[str] = ()) -> list[str]
         for name in names:
             if not any(fnmatchcase(other, name) for other in known):
                 raise ZSpringError(f"no variable {name!r} in the FMU{did_you_mean(name, known)}")
-        wanted = [
-            variable for variable in variables if any(fnmatchcase(variable.name, name) for name in names)
-        ]
+        wanted = [variable for variable in variables if any(fnmatchcase(variable.name, name) for name in names)]
     rows = [["name", "causality", "unit", "start", "allowed", "description"], *map(_row, wanted)]
     widths = [max(map(len, column)) for column in zip(*rows)]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
@@ -38,14 +36,7 @@ def variable_table(variables: Variables, names: Sequence[str] = ()) -> list[str]
 def _row(variable: ScalarVariable) -> list[str]:
     causality = f"{'tunable ' if variable.variability == 'tunable' else ''}{variable.causality}"
     start = "" if variable.start is None else text(variable, parse(variable, variable.start))
-    return [
-        variable.name,
-        causality,
-        variable.unit or "",
-        start,
-        _bounds(variable),
-        variable.description or "",
-    ]
+    return [variable.name, causality, variable.unit or "", start, _bounds(variable), variable.description or ""]
 
 
 def _bounds(variable: ScalarVariable) -> str:

@@ -25,9 +25,7 @@ class Numbers(click.ParamType):
     def convert(self, value, param, ctx) -> tuple[float, ...]:
         if isinstance(value, tuple):
             return value
-        numbers = {
-            number for part in value.replace(",", " ").split() for number in self._part(part, param, ctx)
-        }
+        numbers = {number for part in value.replace(",", " ").split() for number in self._part(part, param, ctx)}
         return tuple(sorted(numbers)) or self.fail("needs at least one number", param, ctx)
 
     def _part(self, part: str, param, ctx) -> list[float]:

@@ -38,7 +38,7 @@ class LinearModel:
         """H = -Z/F at the head in m/N, complex, for frequencies > 0 in Hz of any shape."""
         omega = 2 * np.pi * np.asarray(frequency, dtype=float)[..., None, None]
         dynamic = -(omega**2) * self.M + 1j * omega * self.C + self.K
-        force = np.broadcast_to(np.eye(len(self.names))[:, :1], dynamic.shape[:-1] + (1,))
+        force = np.broadcast_to(np.eye(len(self.names))[:, :1], (*dynamic.shape[:-1], 1))
         return np.linalg.solve(dynamic, force)[..., HEAD, 0]
 
 

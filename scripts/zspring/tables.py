@@ -41,9 +41,7 @@ def read_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """
     try:
         with open(path, encoding="utf-8-sig", newline="") as file:
-            numbered = [
-                (number, line) for number, line in enumerate(file, 1) if line.strip() and line[0] != "#"
-            ]
+            numbered = [(number, line) for number, line in enumerate(file, 1) if line.strip() and line[0] != "#"]
     except UnicodeDecodeError:
         raise ZSpringError(f"{path}: no text in UTF-8") from None
     rows = [

@@ -53,9 +53,7 @@ class Table:
         wanted = " or ".join(f'"{item}"' for item in allowed)
         return self._get(key, ... if default is None else default, wanted, lambda value: value in allowed)
 
-    def number(
-        self, key: str, default: Any = ..., above: float = -math.inf, least: float = -math.inf
-    ) -> float:
+    def number(self, key: str, default: Any = ..., above: float = -math.inf, least: float = -math.inf) -> float:
         wanted = "a number" + (" above 0" if above == 0 else " of 0 or more" if least == 0 else "")
         value = self._get(key, default, wanted, lambda v: is_number(v) and v > above and v >= least)
         return value if value is None else float(value)
@@ -67,10 +65,7 @@ class Table:
     def band(self, key: str) -> tuple[float, float]:
         def fits(value: Any) -> bool:
             return (
-                isinstance(value, list)
-                and len(value) == 2
-                and all(map(is_number, value))
-                and 0 <= value[0] < value[1]
+                isinstance(value, list) and len(value) == 2 and all(map(is_number, value)) and 0 <= value[0] < value[1]
             )
 
         low, high = self._get(key, [0.0, math.inf], "[lowest, highest] frequency in Hz", fits)

@@ -18,8 +18,7 @@ class Variables:
         self._by_name = {variable.name: variable for variable in description.modelVariables}
         self._display_units = {
             unit.name: {
-                display.name: (float(display.factor or 1), float(display.offset or 0))
-                for display in unit.displayUnits
+                display.name: (float(display.factor or 1), float(display.offset or 0)) for display in unit.displayUnits
             }
             for unit in description.unitDefinitions
         }

@@ -12,10 +12,10 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-
-from harness import Fmu
 from platform_runs import RUNS, host_calls
 from release_tools import DIST, PLATFORMS, tool
+
+from harness import Fmu
 
 
 @pytest.fixture(scope="session")
@@ -39,9 +39,23 @@ def host(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
         if not program.exists():
             system, target = PLATFORMS[platform]
             libraries = ["-ldl"] if system == "Linux" else []
-            subprocess.run([sys.executable, "-m", "ziglang", "cc", f"--target={target}", "-Wall", "-Werror",
-                            f"-I{headers}", Path(__file__).with_name("host.c"), "-o", program, *libraries],
-                           check=True)
+            subprocess.run(
+                [
+                    sys.executable,
+                    "-m",
+                    "ziglang",
+                    "cc",
+                    f"--target={target}",
+                    "-Wall",
+                    "-Werror",
+                    f"-I{headers}",
+                    Path(__file__).with_name("host.c"),
+                    "-o",
+                    program,
+                    *libraries,
+                ],
+                check=True,
+            )
         return program
 
     return compiled
@@ -69,8 +83,9 @@ def emulated(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[...,
         return []
 
     def run(platform: str, command: list[str | Path], text: str) -> str:
-        done = subprocess.run([*emulator(platform), *command], input=text, text=True, capture_output=True,
-                              env=variables, timeout=600)
+        done = subprocess.run(
+            [*emulator(platform), *command], input=text, text=True, capture_output=True, env=variables, timeout=600
+        )
         assert done.returncode == 0, done.stderr[-2000:]
         return done.stdout
 

@@ -42,8 +42,7 @@ def host_calls(description: ModelDescription, name: str) -> str:
     """The host's input for this run: it prints all Real outputs after every step."""
     settings, inputs = RUNS[name][1](np.arange(0, 4, STEP))
     reference = {v.name: v.valueReference for v in description.modelVariables}
-    outputs = [v.valueReference for v in description.modelVariables
-               if v.causality == "output" and v.type == "Real"]
+    outputs = [v.valueReference for v in description.modelVariables if v.causality == "output" and v.type == "Real"]
     calls = [f"integer {reference[name]} {value}" for name, value in settings.items()]
     for number, values in enumerate(zip(*inputs.values())):
         calls += [f"real {reference[name]} {bits(value)}" for name, value in zip(inputs, values)]

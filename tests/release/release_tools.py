@@ -8,12 +8,11 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-DIST = ROOT / "dist"
-
-sys.path.append(str(ROOT / "scripts"))
+sys.path += [str(Path(__file__).parents[1] / "helpers"), str(Path(__file__).parents[2] / "scripts" / "tooling")]
+from paths import ROOT as ROOT
 from release import PLATFORMS as PLATFORMS
 
+DIST = ROOT / "dist"
 
 # What must be on this machine, and how it gets there.
 INSTALL = {

@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from zspring.export import copy_without_enumerations
-from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
+from release_tools import ROOT, tool
 
 from client_runs import RUNS, Run
-from release_tools import ROOT, tool
+from zspring.export import copy_without_enumerations
+from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
 
 each_run = pytest.mark.parametrize("run", RUNS.values(), ids=RUNS)
 TOOLS = ROOT / "build" / "clients"  # kept from one run to the next
@@ -85,8 +85,7 @@ def fmi_sim() -> Path:
     program = folder / "bin" / ("fmi-sim.exe" if sys.platform == "win32" else "fmi-sim")
     if not program.exists():
         run_tool(
-            *(tool("cargo"), "install", "--quiet", "--locked"),
-            *("fmi-sim", "--version", FMI_SIM, "--root", folder),
+            *(tool("cargo"), "install", "--quiet", "--locked"), *("fmi-sim", "--version", FMI_SIM, "--root", folder)
         )
     return program
 
@@ -164,11 +163,7 @@ def test_fmucontainer_couples_both_fmus_into_one(tmp_path):
     table = np.zeros(len(speed) + 1, dtype=[("time", float), ("speed", float)])
     table["time"], table["speed"][:-1] = step * np.arange(len(table)), speed
     result = simulate_fmu(
-        str(tmp_path / "line.fmu"),
-        stop_time=step * len(speed),
-        step_size=step,
-        output_interval=step,
-        input=table,
+        str(tmp_path / "line.fmu"), stop_time=step * len(speed), step_size=step, output_interval=step, input=table
     )
     found = np.column_stack([result["force"], result["height"]])[1:]
 

@@ -16,11 +16,11 @@ import numpy as np
 import pytest
 from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
-from zspring.fmu import CATENARY, PANTOGRAPH
-
-import libraries
 from platform_runs import RUNS
 from release_tools import DIST, PLATFORMS, ROOT, tool
+
+import libraries
+from zspring.fmu import CATENARY, PANTOGRAPH
 
 MODELS = [PANTOGRAPH, CATENARY]
 OLDEST_MACOS = {"darwin64": [10, 15, 0], "aarch64-darwin": [11, 0, 0]}
@@ -60,13 +60,19 @@ def test_archive(release, model):
         names = archive.namelist()
         assert archive.testzip() is None
     assert {name.split("/")[1] for name in names if name.startswith("binaries/")} == set(PLATFORMS)
-    assert not [name for name in names if Path(name).name.startswith("fmi2")  # the standard's headers
-                and name.endswith(".h")]
+    assert not [
+        name
+        for name in names
+        if Path(name).name.startswith("fmi2")  # the standard's headers
+        and name.endswith(".h")
+    ]
     compiled = [name.removeprefix("sources/") for name in names if name.endswith(".cpp")]
     assert compiled
     # of the model description and of buildDescription.xml, which is checked by its schema
-    for configurations in (release[model].description.buildConfigurations,
-                           read_build_description(str(release[model].path))):
+    for configurations in (
+        release[model].description.buildConfigurations,
+        read_build_description(str(release[model].path)),
+    ):
         (configuration,) = configurations
         assert configuration.modelIdentifier == model
         (sources,) = configuration.sourceFileSets
@@ -87,8 +93,12 @@ def compiled_sources(release, tmp_path_factory):
                 for name in old.namelist():
                     if not name.startswith("binaries/"):
                         new.writestr(name, old.read(name))
-            subprocess.run([sys.executable, "-m", "fmpy", "compile", fmu], check=True, cwd=folder,
-                           env={**os.environ, "CMAKE_GENERATOR": "Ninja"})
+            subprocess.run(
+                [sys.executable, "-m", "fmpy", "compile", fmu],
+                check=True,
+                cwd=folder,
+                env={**os.environ, "CMAKE_GENERATOR": "Ninja"},
+            )
             fmpy.extract(str(fmu), str(folder / "fmu"))
             (known[model],) = (folder / "fmu" / "binaries" / "linux64").glob("*.so")
         return known[model]

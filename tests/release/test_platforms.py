@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from platform_runs import RUNS
 
 # Largest difference, in parts of the range of each output.

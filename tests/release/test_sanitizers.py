@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from fuzzing import CORPUS, fuzz
 from release_tools import ROOT, tool
+
+from fuzzing import CORPUS, fuzz
 from sanitizers import MEMORY_AND_UB, check_memory_and_ub, run, sanitized, sanitizing_compiler
 from zspring.fmu import CATENARY, PANTOGRAPH
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from zspring.couple.result import LineResult
-from zspring.couple.ssp import LINE_ELEMENT, element_name
 
 from ssp_archive import archive, check
+from zspring.couple.ssp import LINE_ELEMENT, element_name
+from zspring.line.result import LineResult
 
 
 @pytest.fixture(params=[1, 2], ids=["one pantograph", "two pantographs"])

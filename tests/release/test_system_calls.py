@@ -7,9 +7,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from release_tools import tool
+
 from endurance import command
 from libraries import C_LIBRARY
-from release_tools import tool
 from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
 
 MEMORY = {"mmap", "munmap", "mremap", "brk", "mprotect", "madvise"}

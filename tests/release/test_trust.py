@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 from release_tools import ROOT
-from test_fmi_rules_machine import run_rules
+
+from rules_machine import run_rules
 from trust_page import PAGE, PARTS, cells, measure_into, numbers, part
 from zspring.fmu import CATENARY, PANTOGRAPH
 

@@ -8,12 +8,12 @@ import click
 
 from ..errors import ZSpringError
 from ..fmu import CATENARY, installed_fmu
+from ..line.journey import MASSES, START_UPS, Journey, parameter_value
+from ..line.mean_force import STANDING, mean_force
+from ..line.schemes import DRIVES, SCHEMES, Coupling
+from ..line.system import System
 from ..options import chosen_parameters, format_option, opened, output_option, parameters_option, set_option
 from ..parameter_sets import LINES
-from .journey import MASSES, START_UPS, Journey, parameter_value
-from .mean_force import STANDING, mean_force
-from .schemes import DRIVES, SCHEMES, Coupling
-from .system import System
 
 SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameters of the catenary
 
@@ -28,11 +28,7 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
     "of SSP 1.0.  [default: the catenary FMU's own, EN 50318:2002]",
 )
 @click.option(
-    "--tension",
-    type=float,
-    nargs=2,
-    metavar="CONTACT MESSENGER",
-    help="Tension of contact wire and messenger in N.",
+    "--tension", type=float, nargs=2, metavar="CONTACT MESSENGER", help="Tension of contact wire and messenger in N."
 )
 @click.option(
     "--set-line",
@@ -43,12 +39,8 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
 )
 @parameters_option
 @set_option
-@click.option(
-    "--pantographs", "count", type=click.IntRange(1, 2), default=1, show_default=True, help="How many."
-)
-@click.option(
-    "--spacing", type=float, default=100.0, show_default=True, metavar="D", help="Of the two, in m."
-)
+@click.option("--pantographs", "count", type=click.IntRange(1, 2), default=1, show_default=True, help="How many.")
+@click.option("--spacing", type=float, default=100.0, show_default=True, metavar="D", help="Of the two, in m.")
 @click.option("--uplift", type=float, metavar="F", help="Extra upward force on each pantograph in N.")
 @click.option(
     "--mean-force",
@@ -65,9 +57,7 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
     help="Mass on which the uplift acts. Through the upper frame it loads the head suspension as the static "
     "force does, in two-mass models too.",
 )
-@click.option(
-    "--start", type=float, metavar="X", help="Of the first pantograph in m.  [default: half a span]"
-)
+@click.option("--start", type=float, metavar="X", help="Of the first pantograph in m.  [default: half a span]")
 @click.option(
     "--stop",
     type=float,
@@ -99,9 +89,7 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
     show_default=True,
     help="The pantograph solves the contact (Wire) or the master does (Force).",
 )
-@click.option(
-    "--step", type=float, default=1e-3, show_default=True, metavar="H", help="Communication step in s."
-)
+@click.option("--step", type=float, default=1e-3, show_default=True, metavar="H", help="Communication step in s.")
 @click.option("--tolerance", type=float, help="Of the contact force, implicit, as a share of static_force.")
 @click.option("--compare-steps", is_flag=True, help="Tell what the coupling costs at 0.5, 1, 2 and 5 ms.")
 @click.option(
@@ -149,7 +137,7 @@ def couple(
     Writes line.csv with contact forces, heights, uplifts at the supports and friction moments, and a figure.
     After Ctrl-C the rows so far are kept.
     """
-    from . import tasks  # matplotlib is slow to load
+    from . import run  # matplotlib is slow to load
 
     if uplift is not None and supply:
         raise ZSpringError(f"--uplift {uplift:g} and --mean-force {supply}: give one of them")
@@ -167,8 +155,8 @@ def couple(
         journey = Journey(speed / 3.6, start, stop, step, spacing, start_up, uplift or 0.0, uplift_on)
         system = System(catenary, pantograph, line, [parameters] * count, journey, coupling)
         if ssp_path:
-            tasks.export_ssp(system, ssp_path)
+            run.export_ssp(system, ssp_path)
         elif compare_steps:
-            tasks.compare_and_write(system, output, suffix)
+            run.compare_and_write(system, output, suffix)
         else:
-            tasks.run_and_write(system, output, suffix, parquet)
+            run.run_and_write(system, output, suffix, parquet)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .result import LineResult
-from .schemes import Coupling
+from ..line.result import LineResult
+from ..line.schemes import Coupling
 
 STEPS = (0.5e-3, 1e-3, 2e-3, 5e-3)  # s
 

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..figures import new_figure
+from ..line.result import LineResult
 from .compare import Comparison
-from .result import LineResult
 
 COLOURS = ("tab:blue", "tab:orange")
 SLIPPING = 0.99  # share of Mf from which a joint is drawn as slipping; the tanh law creeps below it
@@ -59,12 +59,7 @@ def _draw_heights(axes: Axes, result: LineResult) -> None:
         position = result.position[:, i]
         axes.plot(position, 1e3 * result.wire_height[:, i], color=COLOURS[i], label=f"{name}wire")
         axes.plot(
-            position,
-            1e3 * result.head_height[:, i],
-            color="0.2",
-            linewidth=0.8,
-            linestyle="--",
-            label=f"{name}head",
+            position, 1e3 * result.head_height[:, i], color="0.2", linewidth=0.8, linestyle="--", label=f"{name}head"
         )
     axes.set_ylabel("height  [mm]")
     _legend(axes)

@@ -1,190 +1,122 @@
-"""A run of pantographs along a line: both FMUs from start to stop, and the record of it."""
+"""What `zspring couple` does: run and write, compare communication steps, export the system."""
 
 from __future__ import annotations
 
-import math
-import time
-from collections.abc import Sequence
-from contextlib import ExitStack
-from dataclasses import replace
-from functools import cached_property
+import csv
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from pathlib import Path
 
 from tqdm import tqdm
 
 from ..errors import ZSpringError
-from ..fmu import Instance
-from ..interrupt import Interrupted, stop_on_interrupt
-from ..variables import Value, parse, with_unit
-from .calls import PreparedCalls
-from .record import Record
-from .result import LineResult
-from .schemes import GaussSeidel, Implicit, Jacobi
-from .sides import ContactInMaster, ContactInPantograph, Wire
-from .system import System
+from ..figures import save
+from ..interrupt import Interrupted
+from ..line.result import LineResult, write_result
+from ..line.run import LineRun
+from ..line.schemes import Coupling
+from ..line.statistics import low_pass
+from ..line.system import System
+from ..tables import write_head
+from ..variables import Value, parse
+from .compare import STEPS, compare_steps, compared, comparison_table
+from .plot import comparison_figure, line_figure
+from .report import summary
+from .ssp import write_ssp
 
-LOOK_EVERY = 50  # steps between two looks at Ctrl-C and the progress bar
+Parameters = Mapping[str, Value]
 
 
-def run_line(system: System, progress: bool = False) -> LineResult:
-    """Run the pantographs along the line.
+def run_and_write(system: System, folder: Path, suffix: str, parquet: bool) -> None:
+    """Run along the line and write line.csv, perhaps line.parquet, and the figure line.<suffix>.
 
-    progress        show a progress bar
-    Raises ZSpringError for settings that do not fit the line, FmuError when an FMU refuses something, and
-    Interrupted after Ctrl-C.
+    Raises Interrupted after Ctrl-C and ZSpringError where the run cannot go on; the rows so far are kept.
     """
+    path = folder / "line.csv"
     with LineRun(system) as run:
-        run.finish(progress)
-        return run.result()
-
-
-class LineRun:
-    """A run that can end early: `result` has the rows so far. A context manager that frees the FMUs.
-
-    Errors as those of run_line.
-    """
-
-    def __init__(self, system: System):
-        self.line = system.extent
-        self.journey = journey = self.line.complete(system.journey, len(system.pantographs))
-        self.system = replace(system, journey=journey)
-        self.steps = math.floor((journey.stop - journey.start) / (journey.speed * journey.step) + 1e-9)
-        self._static_forces = system.of_each("static_force")
-        self._done, self._elapsed = 0, 0.0
-        self._stack = ExitStack()
         try:
-            self._start()
-        except BaseException:
-            self._stack.close()
-            raise
-
-    def _start(self) -> None:
-        """Both FMUs initialised, and the master's parts around them."""
-        system, count = self.system, len(self.system.pantographs)
-        (wire,) = self._stack.enter_context(system.catenary.instances())
-        heads = self._stack.enter_context(system.pantograph.instances(count))
-        for head, (parameters, inputs) in zip(heads, self.head_starts):
-            head.start(parameters, inputs)
-        wire.start(*self.wire_start)
-        self.settings = _settings(system, wire, heads)
-
-        wire_calls, *head_calls = (self._stack.enter_context(PreparedCalls(i)) for i in (wire, *heads))
-        self._wire = Wire(wire_calls, count)
-        self.lifted = list(self._wire.heights)  # m, at the start by static_force
-        self._uplifts = [calls.reals([f"uplift.{self.journey.uplift_on}"]) for calls in head_calls]
-        self._scheme = self._make_scheme(head_calls)
-        self._record = Record(self.steps + 1, wire_calls, head_calls, self.line.supports)
-        self._record.take(0, self._shifts(0.0))
-
-    @cached_property
-    def head_starts(self) -> list[tuple[dict[str, Value], dict[str, float]]]:
-        """Parameters and first inputs of each pantograph."""
-        uplift = self.journey.uplift if self.journey.start_up == "direct" else 0.0
-        drive = parse(self.system.pantograph.variables["drive"], self.system.coupling.drive)
-        return [
-            (
-                {**parameters, "drive": drive},
-                {"contact_force": force, f"uplift.{self.journey.uplift_on}": uplift},
-            )
-            for parameters, force in zip(self.system.pantographs, self._static_forces)
-        ]
-
-    @cached_property
-    def wire_start(self) -> tuple[dict[str, Value], dict[str, float]]:
-        """Parameters and first inputs of the catenary."""
-        parameters, inputs = dict(self.system.line), {}
-        for i, force in enumerate(self._static_forces):
-            name = f"pantograph[{i + 1}]"
-            parameters[f"{name}.start"] = self.journey.start - i * self.journey.spacing
-            inputs |= {f"{name}.force": force, f"{name}.speed": self.journey.speed}
-        return parameters, inputs
-
-    def _make_scheme(self, head_calls: Sequence[PreparedCalls]) -> Implicit | GaussSeidel | Jacobi:
-        coupling, forces = self.system.coupling, self._static_forces
-        if coupling.drive == "Wire":
-            sides = [ContactInPantograph(calls) for calls in head_calls]
-        else:
-            for damping in filter(None, self.system.of_each("contact.c")):
-                raise ZSpringError(f"contact.c = {damping:g} N.s/m: must be 0 with drive Force; use drive Wire")
-            stiffness = self.system.of_each("contact.k")
-            sides = [ContactInMaster(*each) for each in zip(head_calls, forces, stiffness)]
-        if coupling.scheme == "implicit":
-            tolerance = coupling.tolerance * max(1.0, *forces)
-            return Implicit(self._wire, sides, tolerance, coupling.max_iterations)
-        return {"explicit": GaussSeidel, "jacobi": Jacobi}[coupling.scheme](self._wire, sides)
-
-    def finish(self, progress: bool = False) -> None:
-        """Run to the stop. Raises Interrupted after Ctrl-C."""
-        size, begin = self.journey.step, time.process_time()
-        with stop_on_interrupt() as stop:
-            bar = tqdm(total=self.steps, unit=" steps", disable=None if progress else True)
-            try:
-                for i in range(self._done, self.steps):
-                    end = (i + 1) * size
-                    shifts = self._shifts(end)
-                    self._scheme.advance(i * size, size, shifts)
-                    self._record.take(i + 1, shifts)
-                    self._done = i + 1
-                    if i % LOOK_EVERY == 0:
-                        bar.update(i + 1 - bar.n)
-                        if stop.is_set():
-                            raise Interrupted(f"interrupted at {end:g} s")
-                bar.update(self.steps - bar.n)
-            finally:
-                bar.close()
-                self._elapsed += time.process_time() - begin
-
-    @property
-    def wire_steps(self) -> float:
-        """Steps of the catenary for one communication step, so far."""
-        return self._wire.steps / max(1, self._done)
-
-    def result(self) -> LineResult:
-        """All rows so far."""
-        rows = slice(self._done + 1)
-        return self._record.result(rows, self.journey.step, self.settings, self._elapsed)
-
-    def _shifts(self, now: float) -> list[float]:
-        """How much lower than the catenary says the pantographs meet the wire, m; sets the ramp's uplift."""
-        if self.journey.start_up == "direct":
-            return self.lifted
-        travelled = now * self.journey.speed / self.line.span
-        if travelled >= 1.0 + self.journey.step * self.journey.speed / self.line.span:
-            return [0.0] * len(self.lifted)
-        rest = 0.5 * (1.0 + math.cos(math.pi * min(travelled, 1.0)))
-        for uplift in self._uplifts:
-            uplift.set((self.journey.uplift * (1.0 - rest),))
-        return [rest * height for height in self.lifted]
-
-    def __enter__(self) -> LineRun:
-        return self
-
-    def __exit__(self, *_) -> None:
-        self._stack.close()
+            run.finish(progress=True)
+        except (Interrupted, ZSpringError) as error:
+            write_result(run.result(), path)
+            raise type(error)(f"{error}; the rows so far are kept in {path}") from None
+        result, extent, wire_steps = run.result(), run.line, run.wire_steps
+    written = [path, *([folder / "line.parquet"] if parquet else []), folder / f"line.{suffix}"]
+    for file in written[:-1]:
+        write_result(result, file)
+    try:
+        filtered = low_pass(result.contact_force, system.journey.step)
+        print(*summary(result, extent), sep="\n")
+    except ZSpringError as error:
+        filtered = None
+        print(f"no statistics: {error}")
+    save(line_figure(result, filtered, _title(result, system)), written[-1])
+    duration = result.time[-1]
+    print(
+        f"{len(result.time) - 1} communication steps, each of {wire_steps:.2f} steps of the catenary\n"
+        f"{duration:.3g} s of line in {result.elapsed:.2f} s, {duration / result.elapsed:.1f} times faster than "
+        "real time"
+    )
+    print("written:", *written)
 
 
-def _settings(system: System, wire: Instance, heads: Sequence[Instance]) -> dict[str, str]:
-    """Everything that it takes to repeat the run, in words."""
-    journey, coupling = system.journey, system.coupling
-    settings = {
-        "speed": f"{journey.speed * 3.6:.6g} km/h",
-        "start": f"{journey.start:g} m",
-        "stop": f"{journey.stop:g} m",
-        "step": f"{journey.step:g} s",
-        "start-up": journey.start_up,
-        "uplift": f"{journey.uplift:g} N on {journey.uplift_on}",
-        "coupling": coupling.scheme,
-        "drive": coupling.drive,
-        "pantographs": str(len(heads)),
-    }
-    if len(heads) > 1:
-        settings["spacing"] = f"{journey.spacing:g} m"
-    if coupling.scheme == "implicit":
-        settings["tolerance"] = f"{coupling.tolerance:g}"
-    named = [("catenary", system.catenary, wire)]
-    named += [(f"pantograph {i + 1}", system.pantograph, head) for i, head in enumerate(heads)]
-    for prefix, fmu, instance in named:
-        settings |= {f"{prefix} {key}": value for key, value in fmu.identity.items()}
-        names = fmu.variables.names("parameter", "calculatedParameter")
-        for name, value in zip(names, instance.get(names)):
-            settings[f"{prefix} {name}"] = with_unit(fmu.variables[name], value)
-    return settings
+def compare_and_write(system: System, folder: Path, suffix: str) -> None:
+    """Compare communication steps; write steps.csv and the figure steps.<suffix>.
+
+    Raises ZSpringError where the run is too short for it.
+    """
+    extent = system.extent
+    journey = extent.complete(system.journey, len(system.pantographs))
+    least = journey.start + extent.span + journey.speed * max(STEPS)
+    if journey.stop < least:
+        raise ZSpringError(
+            f"stop = {journey.stop:g} m: with --compare-steps must be at least {least:g} m, one step of "
+            f"{max(STEPS):g} s more than a span of {extent.span:g} m after the start, {journey.start:g} m"
+        )
+    bar = tqdm(total=len(compared(system.coupling.drive)) * len(STEPS), unit=" runs", disable=None)
+
+    def one(step: float, coupling: Coupling, of_line: Parameters, of_pantographs: Parameters) -> LineResult:
+        journey = replace(system.journey, step=step)
+        with LineRun(system.changed(of_line, of_pantographs, journey=journey, coupling=coupling)) as run:
+            run.finish()
+            bar.update()
+            return run.result()
+
+    rows, stopped, speed = [], None, f"{3.6 * system.journey.speed:g} km/h"
+    try:
+        with bar:
+            for row in compare_steps(one, system.coupling, extent.span):
+                rows.append(row)
+    except (Interrupted, ZSpringError) as error:
+        stopped = error
+    paths = folder / "steps.csv", folder / f"steps.{suffix}"
+    if not rows:
+        raise stopped
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(paths[0], "w", encoding="utf-8", newline="") as file:
+        head = {**system.catenary.identity, "speed": speed, "drive": system.coupling.drive}
+        columns = ["scheme", "step [s]", "rms [N]", "largest [N]", "mean [N]", "deviation [N]", "elapsed [s]"]
+        write_head(file, head, columns)
+        csv.writer(file, lineterminator="\n").writerows(asdict(row).values() for row in rows)
+    print(*comparison_table(rows), sep="\n")
+    if stopped:
+        raise type(stopped)(f"{stopped}; the rows so far are kept in {paths[0]}")
+    save(comparison_figure(rows, f"Coupling at {speed}"), paths[1])
+    print("written:", *paths)
+
+
+def export_ssp(system: System, path: Path) -> None:
+    """Write the archive of SSP 1.0."""
+    with LineRun(system) as run:
+        write_ssp(run, path)
+    print("written:", path)
+
+
+def _title(result: LineResult, system: System) -> str:
+    settings, variables = result.settings, system.pantograph.variables
+    title = f"{settings['speed']}, {settings['coupling']} coupling, step {settings['step']}"
+    names = variables.names("parameter")
+    sets = [dict(zip(names, values)) for values in zip(*(system.of_each(name) for name in names))]
+    has_zspring = any(s["suspension"] == parse(variables["suspension"], "ZSpring") for s in sets)
+    if has_zspring and any(variables.synthetic(s) for s in sets):
+        title += "; Z-spring parameters synthetic"
+    return title

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from ..export import copy_without_enumerations
 from ..fmu import Fmu
+from ..line.run import LineRun
 from ..parameter_sets import write_set
-from .run import LineRun
 
 _SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
 _SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
@@ -41,9 +41,7 @@ def write_ssp(run: LineRun, path: Path) -> None:
             copy_without_enumerations(fmu, copy)
             sources[fmu] = f"resources/{copy.name}"
             archive.write(copy, sources[fmu])
-        system = ET.Element(
-            _tag("System"), name="line", description="Pantographs on an overhead contact line"
-        )
+        system = ET.Element(_tag("System"), name="line", description="Pantographs on an overhead contact line")
         elements = ET.SubElement(system, _tag("Elements"))
         starts = {LINE_ELEMENT: (line_fmu, run.wire_start)}
         starts |= {element_name(i): (pantograph, start) for i, start in enumerate(run.head_starts)}

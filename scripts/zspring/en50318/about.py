@@ -13,9 +13,9 @@ import numpy
 import scipy
 
 from ..fmu import Fmu
-from .report import WORDS, Cell, Chapter, Table
-from .series import BAND, LEAST_RATE
-from .statistics import ORDER, PARTS
+from ..line.series import BAND, LEAST_RATE
+from ..line.statistics import ORDER, PARTS
+from .page import WORDS, Cell, Chapter, Table
 
 TITLE = "What this report shows, and what not"
 NO_CERTIFICATE = "It is no certificate and does not replace the assessment that the standard asks for."
@@ -82,10 +82,7 @@ def made_with(fmus: Iterable[Fmu], settings: Mapping[str, str], files: Iterable[
     rows: list[list[str | Cell]] = [["date", now]]
     for fmu in fmus:
         name = fmu.description.modelName
-        rows += [
-            [name, f"{fmu.description.version}, GUID {fmu.description.guid}"],
-            [f"{name}, SHA-256", fmu.sha256],
-        ]
+        rows += [[name, f"{fmu.description.version}, GUID {fmu.description.guid}"], [f"{name}, SHA-256", fmu.sha256]]
     rows += [
         ["zspring", version("zspring")],
         ["Python", f"{platform.python_version()}, {platform.system()} {platform.machine()}"],

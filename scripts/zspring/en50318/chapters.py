@@ -6,15 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..couple.result import read_result
-from ..couple.summary import series
 from ..fmu import Fmu
-from . import plot, tables
+from ..line.result import read_result
+from ..line.series import Series
+from ..line.statistics import Statistics, statistics
+from . import plot, report
 from .edition import Edition, Judgement, judge
+from .page import Chapter, Picture
 from .plan import HEAD_LINE, Run, slug
-from .report import Chapter, Picture
-from .series import Series
-from .statistics import Statistics, statistics
 
 FILTERS = {  # order of the two-pass filter, by what the tables call it
     "filter of order 2": 2,
@@ -40,7 +39,7 @@ class Outcome:
 
 def outcome(edition: Edition, runs: Sequence[Run], found: Mapping[str, Statistics], folder: Path) -> Outcome:
     """What the runs of an edition came to; their series are read from the folder."""
-    results = [series(read_result(folder / run.series), 0) for run in runs]
+    results = [read_result(folder / run.series).series(0) for run in runs]
     return Outcome(edition, runs, results, [found[run.key] for run in runs])
 
 
@@ -49,7 +48,7 @@ def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
     edition, judged = made.edition, made.judged
     chapter = Chapter(edition.name, [f"Source: {' '.join(edition.source.split())}"])
     if any(judged.values()):
-        chapter.blocks.append(tables.verdict(edition.name, judged) + ".")
+        chapter.blocks.append(report.verdict(edition.name, judged) + ".")
         picture = plot.ranges_figure(judged, edition.name)
         caption = "Figures within their accepted ranges; those whose range is a single value are not drawn"
         chapter.blocks.append(Picture(picture, caption, f"{slug(edition.name)}-ranges.png"))
@@ -59,14 +58,17 @@ def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
         title = f"{edition.name}, {case.title}"
         by_span = {str(s).split(",")[0]: statistics(one, s) for s in run.section.single_spans()}
         chapter.blocks += [
-            tables.case_table(found, judged[case.title], case.speed, f"{title}: {run.section}"),
-            Picture(plot.force_figure(one, run.section, found, title), f"{title}: contact force, height of the "
-                    "contact point and uplift at the supports", run.series.replace(".csv", ".png")),
-            tables.spans_table(found, by_span, f"{title}, span by span"),
-        ]  # fmt: skip
+            report.case_table(found, judged[case.title], case.speed, f"{title}: {run.section}"),
+            Picture(
+                plot.force_figure(one, run.section, found, title),
+                f"{title}: contact force, height of the contact point and uplift at the supports",
+                run.series.replace(".csv", ".png"),
+            ),
+            report.spans_table(found, by_span, f"{title}, span by span"),
+        ]
     seen = {}
     for case, run in zip(edition.cases, made.runs):
-        seen.setdefault((case.line, case.pantograph), tables.parameter_table(case, run, catenary, pantograph))
+        seen.setdefault((case.line, case.pantograph), report.parameter_table(case, run, catenary, pantograph))
     chapter.blocks += seen.values()
     return chapter
 
@@ -80,7 +82,7 @@ def sensitivity_chapter(made: Outcome, runs: Sequence[Run], found: Mapping[str, 
         choices |= {name: statistics(one, run.section, order) for name, order in FILTERS.items()}
         judged[case.title] = {name: judge(each, case.ranges) for name, each in choices.items()}
         rows = {"reference": judge(reference, case.ranges), **judged[case.title]}
-        listed.append(tables.sensitivity_table(reference, choices, rows, case.title))
+        listed.append(report.sensitivity_table(reference, choices, rows, case.title))
         drawn[case.title] = reference, choices, case.ranges.get("standard_deviation")
     picture = Picture(
         plot.sensitivity_figure(drawn, made.edition.name), "Standard deviation by choice", "sensitivity.png"
@@ -92,9 +94,7 @@ def sensitivity_chapter(made: Outcome, runs: Sequence[Run], found: Mapping[str, 
         "among published values with the ranges in view: that its figures are inside is the agreement of a chosen "
         "set and no validation; how many of these choices are inside tells more."
     )
-    return Chapter(
-        f"Sensitivity of {made.edition.name}", [text, f"{tables.departures(judged)}.", picture, *listed]
-    )
+    return Chapter(f"Sensitivity of {made.edition.name}", [text, f"{report.departures(judged)}.", picture, *listed])
 
 
 def heads_chapter(runs: Sequence[Run], found: Mapping[str, Statistics], folder: Path) -> Chapter:
@@ -112,14 +112,8 @@ def heads_chapter(runs: Sequence[Run], found: Mapping[str, Statistics], folder: 
             "rods it is as stiff as the linear one, with free rods half as stiff. So this shows what such a head "
             "can change, not what that of a real DSA-380 does.",
             Picture(plot.heads_figure(by_head, title), "Contact quality by speed", "heads.png"),
-            *(
-                tables.heads_table(by_head, name)
-                for name in ("standard_deviation", "standard_deviation_5_20")
-            ),
-            *(
-                tables.heads_table(by_head, name)
-                for name in ("actual_minimum", "support_uplift", "loss_of_contact")
-            ),
+            *(report.heads_table(by_head, name) for name in ("standard_deviation", "standard_deviation_5_20")),
+            *(report.heads_table(by_head, name) for name in ("actual_minimum", "support_uplift", "loss_of_contact")),
             Picture(
                 plot.heads_force_figure(shown, kept[0].section, f"{title}, {kept[0].speed:g} km/h"),
                 f"Contact force and friction moments at {kept[0].speed:g} km/h",

@@ -12,15 +12,7 @@ import click
 
 from ..errors import ZSpringError
 from ..fmu import installed_fmu
-from ..options import (
-    Numbers,
-    chosen_parameters,
-    fmu_option,
-    opened,
-    output_option,
-    parameters_option,
-    set_option,
-)
+from ..options import Numbers, chosen_parameters, fmu_option, opened, output_option, parameters_option, set_option
 
 FILE = click.Path(path_type=Path, dir_okay=False)
 POSITIVE = click.FloatRange(min=0, min_open=True)
@@ -68,38 +60,60 @@ class Spans(click.ParamType):
 @click.option(
     "--jobs", type=click.IntRange(min=1), metavar="N", help="Runs at a time.  [default: number of processors]"
 )
-@click.option(
-    "--series", type=FILE, metavar="FILE.csv", help="Instead of our runs: a contact force to evaluate."
-)
-@click.option(
-    "--line-test", type=FILE, metavar="FILE.csv", help="A measured contact force, to compare --series with."
-)
+@click.option("--series", type=FILE, metavar="FILE.csv", help="Instead of our runs: a contact force to evaluate.")
+@click.option("--line-test", type=FILE, metavar="FILE.csv", help="A measured contact force, to compare --series with.")
 @click.option("--case", "case_title", metavar="TITLE", help="Compare --series with the ranges of this case.")
 @click.option("--speed", type=POSITIVE, metavar="V", help="Of series without times or positions, in km/h.")
-@click.option(
-    "--spans", type=Spans(), metavar="FIRST:LAST", help="Spans to evaluate.  [default: of the case, or all]"
-)
-@click.option(
-    "--span", type=POSITIVE, default=60.0, show_default=True, metavar="L", help="Length of a span in m."
-)
+@click.option("--spans", type=Spans(), metavar="FIRST:LAST", help="Spans to evaluate.  [default: of the case, or all]")
+@click.option("--span", type=POSITIVE, default=60.0, show_default=True, metavar="L", help="Length of a span in m.")
 @click.option(
     "--first-support", type=float, default=0.0, show_default=True, metavar="X", help="Where span 1 begins, m."
 )
-@click.option("--pantograph", type=click.IntRange(min=1), default=1, show_default=True, metavar="N",
-              help="Which one, in files with several.")  # fmt: skip
-@click.option("--frf", type=FILE, metavar="FILE", help="Instead of our runs: a measured FRF of a pantograph (CSV "
-              "or universal file, see `zspring identify`), to compare with that of --parameters.")  # fmt: skip
-@click.option("--frf-bands", type=Numbers(), default=(0.5, 5.0, 10.0, 20.0), metavar="LIST",
-              help="Edges of the frequency bands in Hz.  [default: 0.5,5,10,20]")  # fmt: skip
-@click.option("--frf-force", type=click.Choice(["specimen", "contact"]), default="specimen", show_default=True,
-              help="Measured force positive along the displacement, or pressing the head down.")  # fmt: skip
 @click.option(
-    "--frf-amplitude", type=POSITIVE, metavar="A", help="Peak acceleration in m/s2, if --frf does not tell."
+    "--pantograph",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Which one, in files with several.",
 )
-@click.option("--fixture-mass", type=click.FloatRange(min=0), default=0.0, show_default=True, metavar="M",
-              help="What moves between load cell and head in the measured FRF, in kg.")  # fmt: skip
-@click.option("--direction", type=click.Choice(["up", "down", "rest"]), default="up", show_default=True,
-              help="Of the sweep in the measured FRF.")  # fmt: skip
+@click.option(
+    "--frf",
+    type=FILE,
+    metavar="FILE",
+    help="Instead of our runs: a measured FRF of a pantograph (CSV "
+    "or universal file, see `zspring identify`), to compare with that of --parameters.",
+)
+@click.option(
+    "--frf-bands",
+    type=Numbers(),
+    default=(0.5, 5.0, 10.0, 20.0),
+    metavar="LIST",
+    help="Edges of the frequency bands in Hz.  [default: 0.5,5,10,20]",
+)
+@click.option(
+    "--frf-force",
+    type=click.Choice(["specimen", "contact"]),
+    default="specimen",
+    show_default=True,
+    help="Measured force positive along the displacement, or pressing the head down.",
+)
+@click.option("--frf-amplitude", type=POSITIVE, metavar="A", help="Peak acceleration in m/s2, if --frf does not tell.")
+@click.option(
+    "--fixture-mass",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    show_default=True,
+    metavar="M",
+    help="What moves between load cell and head in the measured FRF, in kg.",
+)
+@click.option(
+    "--direction",
+    type=click.Choice(["up", "down", "rest"]),
+    default="up",
+    show_default=True,
+    help="Of the sweep in the measured FRF.",
+)
 @parameters_option
 @set_option
 @output_option("results/en50318")
@@ -168,13 +182,14 @@ def en50318(
             plan = Plan(editions, not (quick or edition_path), speeds)
             validate(plan, catenary, fmu, output, jobs)
             return
-        from ..identify.measured import Source
+        from ..bench.measured import Source
         from .own_data import OwnData, report_on
 
         source = frf and Source(frf, frf_amplitude, frf_force, fixture_mass)
         parameters = chosen_parameters(fmu, parameter_set, assignments) if frf else {}
-        data = OwnData(series, line_test, editions[0], case_title, speed and speed / 3.6,
-                       spans, span, first_support, pantograph)  # fmt: skip
+        data = OwnData(
+            series, line_test, editions[0], case_title, speed and speed / 3.6, spans, span, first_support, pantograph
+        )
         report_on(data, source, parameters, frf_bands, direction, fmu, catenary, output, jobs)
 
 

@@ -11,11 +11,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ..couple.mean_force import STANDING, mean_force
 from ..errors import ZSpringError, did_you_mean
+from ..line.mean_force import STANDING, mean_force
+from ..line.statistics import FIGURES, Statistics
 from ..parameter_sets import LINES, PANTOGRAPHS, find_set, packaged_sets
 from ..toml_tables import Table, is_number, read_toml
-from .statistics import FIGURES, Statistics
 
 DEVIATION_SHARE = 0.3  # of the mean force: largest standard deviation, as papers quote it
 MOST_SPEED = 600.0  # km/h

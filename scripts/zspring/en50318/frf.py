@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..bench.measured import Curve, Source, in_band, read_curves
+from ..bench.model import BenchModel
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..identify.bench_model import BenchModel
-from ..identify.measured import Curve, Source, in_band, read_curves
 from ..variables import Value
 
 ACCURATE_STEP = 5e-4  # s; at 2 ms the solver itself is off by 0.8 % in frequency at 20 Hz
@@ -77,7 +78,7 @@ def band_errors(measured: Curve, computed: np.ndarray, edges: Sequence[float]) -
     with np.errstate(invalid="ignore"):
         ratio = computed / measured.H
     errors = []
-    for low, high in zip(edges, edges[1:]):
+    for low, high in itertools.pairwise(edges):
         inside = (measured.frequency >= low) & (measured.frequency < high)
         if high == edges[-1]:
             inside |= measured.frequency == high

@@ -7,20 +7,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..bench.measured import Source
+from ..files import synthetic_note, used_parameters, write_table
 from ..fmu import Fmu
-from ..identify.measured import Source
 from ..interrupt import Interrupted, stop_on_interrupt
+from ..line.series import Series, read_series
+from ..line.statistics import FIGURES, Section, Statistics, statistics
 from ..parameter_sets import LINES, find_set, read_set
-from ..studies.files import synthetic_note, used_parameters, write_table
 from ..variables import Value
-from . import about, plot, tables
+from . import about, plot, report
 from .edition import Case, Edition, agreement, judge
 from .frf import FrfComparison, compare_frf
+from .page import Chapter, Picture, Table
 from .plan import section_of, slug
-from .report import Chapter, Picture, Table
 from .run import finish
-from .series import Series, read_series
-from .statistics import FIGURES, Section, Statistics, statistics
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def report_on(
     folder: Path,
     jobs: int,
 ) -> None:
-    """Evaluate the contact forces, compare the FRF of `source`, write the report and print its tables.
+    """Evaluate the contact forces, compare the FRF of `source`, write the report and print its report.
 
     parameters, edges, direction    of the FRF, see compare_frf
     """
@@ -70,7 +70,7 @@ def report_on(
             made.append(series_chapter(series, section, case, title))
             settings[title] = str(path)
     if found:
-        lines += tables.as_lines(figures_table(found, str(section or "the whole series")))
+        lines += report.as_lines(figures_table(found, str(section or "the whole series")))
     if len(found) == 2:
         made.append(agreement_chapter(*found.values(), data.edition))
     if source:
@@ -79,7 +79,7 @@ def report_on(
         made.append(chapter)
         files += written
         settings["measured FRF"] = str(source.path)
-        lines += [line for b in chapter.blocks if isinstance(b, Table) for line in tables.as_lines(b)]
+        lines += [line for b in chapter.blocks if isinstance(b, Table) for line in report.as_lines(b)]
     lines += [b for chapter in made for b in chapter.blocks if isinstance(b, str) and "accepted ranges" in b]
     written = finish(folder, [about.own_data(), *made], (pantograph,), settings, files)
     print(*lines, " ".join(["written:", *map(str, written)]), sep="\n")
@@ -90,18 +90,16 @@ def series_chapter(series: Series, section: Section | None, case: Case | None, t
     found = statistics(series, section)
     judged = judge(found, case.ranges) if case else []
     place = str(section or "the whole series")
-    chapter = Chapter(
-        title, [f"{series.name}: {series.time.size} samples, one each {1e3 * series.step:.4g} ms."]
-    )
+    chapter = Chapter(title, [f"{series.name}: {series.time.size} samples, one each {1e3 * series.step:.4g} ms."])
     if judged:
-        chapter.blocks.append(tables.verdict(case.title, {title.lower(): judged}) + ".")
+        chapter.blocks.append(report.verdict(case.title, {title.lower(): judged}) + ".")
     chapter.blocks += [
-        tables.case_table(found, judged, series.speed, f"{title}: {place}"),
+        report.case_table(found, judged, series.speed, f"{title}: {place}"),
         Picture(plot.force_figure(series, section, found, title), f"{title}: {place}", f"{slug(title)}.png"),
     ]
     if section and section.last > section.first:
         by_span = {str(s).split(",")[0]: statistics(series, s) for s in section.single_spans()}
-        chapter.blocks.append(tables.spans_table(found, by_span, f"{title}, span by span"))
+        chapter.blocks.append(report.spans_table(found, by_span, f"{title}, span by span"))
     return chapter
 
 
@@ -113,14 +111,10 @@ def agreement_chapter(simulated: Statistics, measured: Statistics, edition: Edit
         if measured[name] and math.isfinite(measured[name]) and math.isfinite(simulated[name])
     }
     judged = agreement(simulated, measured, limits)
-    chapter = Chapter(
-        "Simulation and line test", [f"Accepted differences: {' '.join(edition.source.split())}"]
-    )
+    chapter = Chapter("Simulation and line test", [f"Accepted differences: {' '.join(edition.source.split())}"])
     if judged:
-        chapter.blocks.append(
-            tables.verdict("Simulation against line test", {"the line test": judged}, "%") + "."
-        )
-    chapter.blocks.append(tables.agreement_table(simulated, measured, judged))
+        chapter.blocks.append(report.verdict("Simulation against line test", {"the line test": judged}, "%") + ".")
+    chapter.blocks.append(report.agreement_table(simulated, measured, judged))
     return chapter
 
 
@@ -150,16 +144,13 @@ def frf_chapter(
     failed = sum(int((c.computed != c.computed).sum()) for c in comparisons)
     missing = [f"{failed} points could not be computed."] if failed else []
     picture = Picture(plot.frf_comparison_figure(comparisons, edges, title), title, "frf-comparison.png")
-    blocks = [text, *missing, tables.frf_table(comparisons), picture]
+    blocks = [text, *missing, report.frf_table(comparisons), picture]
     return Chapter("Pantograph: measured and computed FRF", blocks), [path]
 
 
 def figures_table(found: Mapping[str, Statistics], caption: str) -> Table:
     """Figures of the series side by side."""
-    rows = [
-        [tables.labelled(name), *(tables.number(name, each[name]) for each in found.values())]
-        for name in FIGURES
-    ]
+    rows = [[report.labelled(name), *(report.number(name, each[name]) for each in found.values())] for name in FIGURES]
     return Table(caption, ["", *found], rows)
 
 
@@ -169,8 +160,6 @@ def _write_frf(path: Path, fmu: Fmu, source: Source, comparisons: Sequence[FrfCo
     rows = [
         [each.measured.label, float(f), float(a), m.real, m.imag, c.real, c.imag]
         for each in comparisons
-        for f, a, m, c in zip(
-            each.measured.frequency, each.measured.acceleration, each.measured.H, each.computed
-        )
+        for f, a, m, c in zip(each.measured.frequency, each.measured.acceleration, each.measured.H, each.computed)
     ]
     write_table(path, {**fmu.identity, "measured": str(source.path)}, columns, rows)

@@ -7,14 +7,14 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 
-from ..couple.journey import LineExtent
-from ..couple.mean_force import mean_force
 from ..errors import ZSpringError
 from ..fmu import Fmu
+from ..line.journey import LineExtent
+from ..line.mean_force import mean_force
+from ..line.statistics import Section
 from ..parameter_sets import LINES, find_set, read_set
 from ..variables import Value, parse
 from .edition import Case, Edition
-from .statistics import Section
 
 HEAD_SPEEDS = (200.0, 225.0, 250.0, 275.0, 300.0, 325.0, 350.0)  # km/h
 SHOWN_HEADS = 300.0  # km/h at which the forces of the heads are drawn, if it is one of the speeds
@@ -85,15 +85,11 @@ CHOICES = (
     Choice("elements of 0.5 m", {"mesh.element": 0.5}),
     Choice("step 0.5 ms", {"solver.step": 5e-4}, {"step": 5e-4}),
     Choice("explicit coupling", run={"scheme": "explicit"}),
-)  # fmt: skip
+)
 
 HEADS = (
     ("linear, k1", "dsa-380", {"suspension": "Linear"}),
-    (
-        "Z-spring, regularized friction",
-        "dsa-380-zspring",
-        {"suspension": "ZSpring", "friction": "Regularized"},
-    ),
+    ("Z-spring, regularized friction", "dsa-380-zspring", {"suspension": "ZSpring", "friction": "Regularized"}),
     ("Z-spring, Coulomb friction", "dsa-380-zspring", {"suspension": "ZSpring", "friction": "Coulomb"}),
     ("Z-spring linearized, rods free", "dsa-380-zspring", {"suspension": "LinearFree"}),
 )
@@ -109,12 +105,7 @@ def sensitivity_runs(references: Sequence[Run]) -> list[Run]:
     runs = []
     for run in references:
         for choice in CHOICES:
-            named = {
-                "group": "sensitivity",
-                "label": choice.label,
-                "of": f"{run.of}, {run.label}",
-                "series": "",
-            }
+            named = {"group": "sensitivity", "label": choice.label, "of": f"{run.of}, {run.label}", "series": ""}
             changed = replace(run, line={**run.line, **choice.line}, **choice.run, **named)
             if choice.spans:
                 first, last = choice.spans

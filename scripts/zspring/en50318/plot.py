@@ -9,13 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..couple.result import LineResult
+from ..bench.responses import phase_degrees
 from ..figures import new_figure
-from ..frf.quantities import phase_degrees
+from ..line.result import LineResult
+from ..line.series import Series
+from ..line.statistics import FIGURES, Section, Statistics, low_pass
 from .edition import Judgement
 from .frf import FrfComparison
-from .series import Series
-from .statistics import FIGURES, Section, Statistics, low_pass
 
 COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:purple")
 STYLES = ("-", "-", ":", "--")
@@ -34,18 +34,12 @@ def force_figure(series: Series, section: Section | None, found: Statistics, tit
     uplift = series.uplift or {}
     panels = 1 + (series.height is not None) + bool(uplift)
     figure = new_figure(10, 1.2 + 2.2 * panels)
-    all_axes = figure.subplots(
-        panels, 1, sharex=True, squeeze=False, height_ratios=[1.6, *[1] * (panels - 1)]
-    )[:, 0]
+    all_axes = figure.subplots(panels, 1, sharex=True, squeeze=False, height_ratios=[1.6, *[1] * (panels - 1)])[:, 0]
     axes = all_axes[0]
     axes.plot(along, series.force, color="0.65", linewidth=0.6, label="unfiltered")
     axes.plot(along, low_pass(series.force, series.step), color=COLOURS[0], linewidth=1.4, label="0-20 Hz")
     low, high = section.bounds if section else along[[0, -1]]
-    lines = (
-        ("mean_force", "-", "mean"),
-        ("statistical_maximum", "--", "mean ± 3σ"),
-        ("statistical_minimum", "--", ""),
-    )
+    lines = (("mean_force", "-", "mean"), ("statistical_maximum", "--", "mean ± 3σ"), ("statistical_minimum", "--", ""))
     for name, style, text in lines:
         axes.plot([low, high], [found[name]] * 2, style, color="tab:red", linewidth=1, label=text or None)
     axes.set_ylabel("contact force  [N]")
@@ -172,9 +166,7 @@ def frf_comparison_figure(comparisons: Sequence[FrfComparison], edges: Sequence[
     """Magnitude and phase of the receptance: measured points and computed lines, by amplitude."""
     figure = new_figure(10, 6.5)
     magnitude, phase = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
-    for each, colour in zip(
-        comparisons, matplotlib.colormaps["plasma"](np.linspace(0, 0.85, len(comparisons)))
-    ):
+    for each, colour in zip(comparisons, matplotlib.colormaps["plasma"](np.linspace(0, 0.85, len(comparisons)))):
         frequency = each.measured.frequency
         for H, style, label in (
             (each.measured.H, {"marker": ".", "linestyle": "none"}, each.measured.label),

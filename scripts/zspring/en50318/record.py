@@ -7,9 +7,9 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from ..line.statistics import FIGURES, Statistics
 from ..tables import read_table, write_head
 from .plan import Run
-from .statistics import FIGURES, Statistics
 from .workers import Finished
 
 FIGURE_COLUMNS = {name: f"{name} [{unit}]" if unit else name for name, (_, unit, _) in FIGURES.items()}

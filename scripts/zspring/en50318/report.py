@@ -1,89 +1,179 @@
-"""The HTML report: chapters of text, tables and figures in one file that needs nothing else.
-
-Figures are embedded as SVG. The page has no script, and its content security policy lets a browser load
-nothing from outside.
-"""
+"""Tables of the report, which the command prints as well."""
 
 from __future__ import annotations
 
-import base64
-import importlib.resources
-import io
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+import math
+import re
+from collections.abc import Mapping, Sequence
 
-import jinja2
-from matplotlib.figure import Figure
+from ..fmu import Fmu
+from ..line.mean_force import mean_force
+from ..line.statistics import FIGURES, Statistics
+from ..parameter_sets import describe_set
+from ..variables import text
+from .edition import DEVIATION_SHARE, Case, Judgement, sets_of
+from .frf import FrfComparison
+from .page import BAD, GOOD, WORDS, Cell, Table
+from .plan import Run
 
-from ..figures import save
-
-GOOD, BAD, WORDS = "good", "bad", "words"
-
-
-@dataclass(frozen=True)
-class Cell:
-    """Text of a table's cell and how it is set: GOOD, BAD, WORDS or as a number."""
-
-    text: str
-    look: str = ""
-
-
-@dataclass(frozen=True)
-class Table:
-    """Rows of texts or Cells; the first of each row is its head."""
-
-    caption: str
-    header: Sequence[str]
-    rows: Sequence[Sequence[str | Cell]]
-
-    @property
-    def is_words(self) -> bool:
-        """Whether the last column is of words, which are set to the left."""
-        return bool(self.rows) and self.cells[0][-1].look == WORDS
-
-    @property
-    def cells(self) -> list[list[Cell]]:
-        return [[cell if isinstance(cell, Cell) else Cell(cell) for cell in row] for row in self.rows]
+SENSITIVE = (
+    "mean_force",
+    "standard_deviation",
+    "statistical_maximum",
+    "statistical_minimum",
+    "actual_maximum",
+    "actual_minimum",
+    "support_uplift",
+)
 
 
-@dataclass(frozen=True)
-class Picture:
-    """A figure, its caption, and the file it is written to beside the report."""
-
-    figure: Figure
-    caption: str
-    file: str
-
-    @property
-    def source(self) -> str:
-        """As a data URI."""
-        buffer = io.BytesIO()
-        self.figure.savefig(buffer, format="svg", metadata={"Date": None})
-        return "data:image/svg+xml;base64," + base64.b64encode(buffer.getvalue()).decode()
+def number(name: str, value: float) -> str:
+    """A figure with its digits; a dash where the series does not tell it."""
+    return "-" if math.isnan(value) else f"{value:.{FIGURES[name][2]}f}"
 
 
-@dataclass
-class Chapter:
-    """A heading and what follows it, in order; texts are paragraphs."""
-
-    title: str
-    blocks: list[str | Table | Picture] = field(default_factory=list)
-
-    def kinds(self) -> list[tuple[str, str | Table | Picture]]:
-        """Blocks with their kind, for the template."""
-        names = {str: "text", Table: "table", Picture: "picture"}
-        return [(names[type(block)], block) for block in self.blocks]
+def labelled(name: str) -> str:
+    label, unit, _ = FIGURES[name]
+    return f"{label}, {unit}" if unit else label
 
 
-def write_report(path: Path, title: str, chapters: Sequence[Chapter]) -> list[Path]:
-    """Write the page, and its pictures as PNG beside it; all paths written."""
-    template = importlib.resources.files(__package__).joinpath("report.html").read_text(encoding="utf-8")
-    environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    page = environment.from_string(template).render(title=title, chapters=chapters)
-    path.write_text(page, encoding="utf-8")
-    pictures = [block for chapter in chapters for block in chapter.blocks if isinstance(block, Picture)]
-    for picture in pictures:
-        save(picture.figure, path.parent / picture.file)
-    return [path, *(path.parent / picture.file for picture in pictures)]
+def distance(judgement: Judgement) -> Cell:
+    """Inside, or by how much outside."""
+    if math.isnan(judgement.value):
+        return Cell("not known")
+    if judgement.is_inside:
+        return Cell("inside", GOOD)
+    return Cell(f"outside by {judgement.outside:+.3g}", BAD)
+
+
+def case_table(found: Statistics, judgements: Sequence[Judgement], speed: float | None, caption: str) -> Table:
+    """All figures at `speed` km/h, with the accepted ranges where there are any; then deviation and mean force
+    beside what papers quote as the limits of current collection."""
+    by_name = {judgement.name: judgement for judgement in judgements}
+    rows = []
+    for name in FIGURES:
+        row: list[str | Cell] = [labelled(name), number(name, found[name])]
+        if judgements:
+            judged = by_name.get(name)
+            row += ["{:g} to {:g}".format(*judged.accepted), distance(judged)] if judged else ["", ""]
+        rows.append(row)
+    share = found["standard_deviation"] / found["mean_force"]
+    inside = Cell("inside", GOOD) if share <= DEVIATION_SHARE else Cell("outside", BAD)
+    blank = [""] * (2 if judgements else 0)
+    label = f"standard deviation / mean force, at most {DEVIATION_SHARE:g}"
+    rows.append([label, f"{share:.3f}", *(["", inside] if judgements else [])])
+    if speed:
+        target = number("mean_force", mean_force("AC", speed))
+        rows.append(["target mean force of AC lines, N", target, *blank])
+    return Table(caption, ["", "found", *(["accepted", ""] if judgements else [])], rows)
+
+
+def spans_table(whole: Statistics, by_span: Mapping[str, Statistics], caption: str) -> Table:
+    """The figures span by span, and over all of them."""
+    columns = {**by_span, "all": whole}
+    rows = [[labelled(name), *(number(name, found[name]) for found in columns.values())] for name in FIGURES]
+    return Table(caption, ["", *columns], rows)
+
+
+def sensitivity_table(
+    reference: Statistics, choices: Mapping[str, Statistics], judged: Mapping[str, Sequence[Judgement]], caption: str
+) -> Table:
+    """Main figures by choice; those outside their accepted ranges are marked."""
+    rows = []
+    for label, found in {"reference": reference, **choices}.items():
+        outside = {judgement.name for judgement in judged[label] if not judgement.is_inside}
+        rows.append([label, *(Cell(number(n, found[n]), BAD if n in outside else "") for n in SENSITIVE)])
+    return Table(caption, ["", *map(labelled, SENSITIVE)], rows)
+
+
+def heads_table(found: Mapping[str, Mapping[float, Statistics]], name: str) -> Table:
+    """One figure by head and speed."""
+    speeds = list(next(iter(found.values())))
+    rows = [[head, *(number(name, by_speed[speed][name]) for speed in speeds)] for head, by_speed in found.items()]
+    return Table(labelled(name), ["", *(f"{speed:g} km/h" for speed in speeds)], rows)
+
+
+def agreement_table(simulated: Statistics, measured: Statistics, judgements: Sequence[Judgement]) -> Table:
+    """Simulation and line test side by side."""
+    by_name = {judgement.name: judgement for judgement in judgements}
+    rows = []
+    for name in FIGURES:
+        judged = by_name.get(name)
+        limits = [f"{judged.value:+.1f} %", f"± {judged.accepted[1]:g} %", distance(judged)] if judged else [""] * 3
+        rows.append([labelled(name), number(name, simulated[name]), number(name, measured[name]), *limits])
+    header = ["", "simulation", "line test", "difference", "accepted", ""]
+    return Table("Simulation and line test", header, rows)
+
+
+def frf_table(comparisons: Sequence[FrfComparison]) -> Table:
+    """Errors by amplitude and band."""
+    rows = [
+        [
+            comparison.measured.label,
+            "{:g} to {:g} Hz".format(*error.band),
+            f"{error.points}",
+            *(f"{100 * v:+.1f} %" for v in (error.magnitude_mean, error.magnitude_largest)),
+            f"{100 * error.magnitude_rms:.1f} %",
+            *(f"{v:+.1f} deg" for v in (error.phase_mean, error.phase_largest)),
+            f"{error.phase_rms:.1f} deg",
+        ]
+        for comparison in comparisons
+        for error in comparison.errors
+    ]
+    header = ["amplitude", "band", "points", "magnitude, mean", "largest", "rms", "phase, mean", "largest", "rms"]
+    return Table("Computed against measured, by frequency band", header, rows)
+
+
+def parameter_table(case: Case, run: Run, catenary: Fmu, pantograph: Fmu) -> Table:
+    """Every parameter that the sets of a case give, with its source; arrays in one row."""
+    rows: list[list[str | Cell]] = []
+    parts = ("line", catenary, run.line), ("pantograph", pantograph, run.pantograph)
+    for path, (part, fmu, values) in zip(sets_of(case), parts):
+        description, remarks = describe_set(path)
+        own = {name: remark for remark, names in remarks.items() for name in names}
+        own.setdefault("static_force", f"of the case {case.title}")
+        arrays: dict[tuple[str, str, str], list[str]] = {}
+        for name, value in values.items():
+            variable = fmu.variables[name]
+            key = re.sub(r"\[\d+\]", "[]", name), variable.unit or "", own.get(name, "as its set says, above")
+            arrays.setdefault(key, []).append(text(variable, value))
+        rows.append([f"{part}: {path.stem}", "", Cell(description, WORDS)])
+        rows += [
+            [name, f"{', '.join(each)} {unit}".strip(), Cell(source, WORDS)]
+            for (name, unit, source), each in arrays.items()
+        ]
+    return Table(f"Parameters of {case.title}", ["parameter", "value", "source"], rows)
+
+
+def departures(judged: Mapping[str, Mapping[str, Sequence[Judgement]]]) -> str:
+    """One sentence on how many other choices put a figure outside its range; `judged` by case and choice."""
+    counts = [
+        f"{sum(any(j.outside for j in each) for each in choices.values())} of {len(choices)} at {case}"
+        for case, choices in judged.items()
+    ]
+    return f"Choices with which at least one figure is outside its accepted range: {', '.join(counts)}"
+
+
+def as_lines(table: Table) -> list[str]:
+    """The table as text, columns aligned to the right."""
+    rows = [list(table.header), *([cell.text for cell in row] for row in table.cells)]
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    lines = [table.caption] if table.caption else []
+    for first, *rest in rows:
+        cells = [first.ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(rest, widths[1:]))]
+        lines.append("  ".join(cells).rstrip())
+    return lines
+
+
+def verdict(name: str, judged: Mapping[str, Sequence[Judgement]], unit: str | None = None) -> str:
+    """One sentence on how many figures are inside their ranges; `unit` where it is not the figures' own."""
+    known = [(case, j) for case, each in judged.items() for j in each if not math.isnan(j.value)]
+    outside = [
+        f"{FIGURES[j.name][0]} at {case} by {j.outside:+.3g} {unit or FIGURES[j.name][1]}"
+        for case, j in known
+        if not j.is_inside
+    ]
+    if not outside:
+        return f"{name}: all {len(known)} figures are inside their accepted ranges"
+    listed = ", ".join(outside)
+    return f"{name}: {len(outside)} of {len(known)} figures are outside their accepted ranges: {listed}"

@@ -13,12 +13,12 @@ from tqdm import tqdm
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..interrupt import Interrupted, stop_on_interrupt
-from . import about, chapters, tables
+from ..line.statistics import BAND, ORDER
+from . import about, chapters, report
 from .edition import Edition
+from .page import Chapter, write_report
 from .plan import head_runs, reference_runs, sensitivity_runs
 from .record import Record
-from .report import Chapter, write_report
-from .statistics import BAND, ORDER
 from .workers import run_all
 
 TITLE = "EN 50318: simulation of pantograph and overhead line"
@@ -34,7 +34,7 @@ class Plan:
 
 
 def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int) -> None:
-    """Run what the folder has no result of; write the report and print its main tables.
+    """Run what the folder has no result of; write the report and print its main report.
 
     Raises ZSpringError where a run cannot be made, Interrupted after Ctrl-C; finished runs are kept.
     """
@@ -59,18 +59,14 @@ def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int
         made.append(chapters.heads_chapter(heads, record.found, folder))
         by_head = chapters.heads(heads, record.found)
         for name in ("standard_deviation", "loss_of_contact"):
-            lines += ["", *tables.as_lines(tables.heads_table(by_head, name))]
+            lines += ["", *report.as_lines(report.heads_table(by_head, name))]
     series = [folder / run.series for run in runs if run.series]
     written = finish(folder, [about.own_runs(), *made], (catenary, pantograph), {}, [record.path, *series])
     print(*lines, "", speed, f"written: {written[0]} and {len(written) - 1} files beside it", sep="\n")
 
 
 def finish(
-    folder: Path,
-    made: Sequence[Chapter],
-    fmus: Sequence[Fmu],
-    settings: Mapping[str, str],
-    files: Sequence[Path],
+    folder: Path, made: Sequence[Chapter], fmus: Sequence[Fmu], settings: Mapping[str, str], files: Sequence[Path]
 ) -> list[Path]:
     """Write the report, after these chapters those of every report; all paths, that of the report first."""
     last = about.made_with(fmus, settings, files)
@@ -114,18 +110,16 @@ def _summary(made: chapters.Outcome) -> list[str]:
     """Main figures of an edition's cases side by side, and the verdict."""
     judged = made.judged
     rows = []
-    for name in tables.SENSITIVE + ("loss_of_contact",):
-        row = [tables.labelled(name)]
+    for name in (*report.SENSITIVE, "loss_of_contact"):
+        row = [report.labelled(name)]
         for case, found in zip(made.edition.cases, made.found):
             accepted = case.ranges.get(name)
-            row.append(
-                tables.number(name, found[name]) + ("  {:g}..{:g}".format(*accepted) if accepted else "")
-            )
+            row.append(report.number(name, found[name]) + ("  {:g}..{:g}".format(*accepted) if accepted else ""))
         rows.append(row)
     titles = [case.title for case in made.edition.cases]
-    lines = tables.as_lines(tables.Table("", [made.edition.name, *titles], rows))
+    lines = report.as_lines(report.Table("", [made.edition.name, *titles], rows))
     if any(judged.values()):
-        lines.append(tables.verdict(made.edition.name, judged))
+        lines.append(report.verdict(made.edition.name, judged))
     return [*lines, ""]
 
 

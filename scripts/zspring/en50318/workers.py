@@ -12,16 +12,15 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..couple.journey import Journey
-from ..couple.result import write_result
-from ..couple.run import run_line
-from ..couple.schemes import Coupling
-from ..couple.summary import series
-from ..couple.system import System
 from ..errors import ZSpringError
 from ..fmu import Fmu
+from ..line.journey import Journey
+from ..line.result import write_result
+from ..line.run import run_line
+from ..line.schemes import Coupling
+from ..line.statistics import Statistics, statistics
+from ..line.system import System
 from .plan import Run
-from .statistics import Statistics, statistics
 
 
 @dataclass(frozen=True)
@@ -72,12 +71,10 @@ def _execute(run: Run, folder: Path) -> Finished:
     """One run; its series goes to a file that is whole or not there. Raises ZSpringError naming the run."""
     catenary, pantograph = _fmus
     try:
-        journey = Journey(
-            run.speed / 3.6, run.start, step=run.step, start_up=run.start_up, uplift=run.uplift
-        )
+        journey = Journey(run.speed / 3.6, run.start, step=run.step, start_up=run.start_up, uplift=run.uplift)
         system = System(catenary, pantograph, run.line, [run.pantograph], journey, Coupling(run.scheme))
         result = run_line(system)
-        found = statistics(series(result, 0), run.section)
+        found = statistics(result.series(0), run.section)
     except ZSpringError as error:
         raise ZSpringError(f"{run.of}, {run.label}, {run.speed:g} km/h: {error}") from None
     if run.series:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+
 import click
 
+from ..bench.measure import BENCH_PARAMETERS, BENCHES, LOOK_PERIODS, FrfSettings
+from ..bench.responses import QUANTITIES
 from ..options import (
     Numbers,
     chosen_parameters,
@@ -15,8 +18,6 @@ from ..options import (
     parameters_option,
     set_option,
 )
-from .measure import BENCH_PARAMETERS, BENCHES, LOOK_PERIODS, FrfSettings
-from .quantities import QUANTITIES
 
 STANDARD = FrfSettings()
 
@@ -53,8 +54,7 @@ STANDARD = FrfSettings()
     help="What to draw: receptance H = -Z/F or dynamic stiffness 1/H.",
 )
 @output_option(
-    described="results/frf-FRICTION-DIRECTION, and a code for the settings where they differ from the standard "
-    "figure's"
+    described="results/frf-FRICTION-DIRECTION, and a code for the settings where they differ from the standard figure's"
 )
 @click.option(
     "--tolerance",
@@ -140,15 +140,7 @@ def frf(
     with opened(fmu_path) as fmu:
         parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=BENCH_PARAMETERS)
         settings = FrfSettings(
-            amplitudes,
-            frequencies,
-            parameters,
-            direction,
-            through,
-            tolerance,
-            min_periods,
-            max_periods,
-            stroke,
+            amplitudes, frequencies, parameters, direction, through, tolerance, min_periods, max_periods, stroke
         )
         run_frf(
             fmu,

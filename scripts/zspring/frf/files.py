@@ -10,9 +10,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..bench.measure import FrfPoint, Sweep
+from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
 from ..tables import read_table, write_head
-from .measure import FrfPoint, Sweep
-from .quantities import QUANTITIES, as_quantity, phase_degrees
+
 
 def frf_columns(quantity: str) -> list[str]:
     """Column names of an FRF file."""
@@ -49,11 +50,7 @@ def frf_row(point: FrfPoint, quantity: str) -> list[str]:
         point.change,
     ]
     counts = [point.steps, point.iterations, point.refinements, point.iterations_max]
-    return [
-        *("" if math.isnan(number) else repr(number) for number in numbers),
-        point.status,
-        *map(str, counts),
-    ]
+    return [*("" if math.isnan(number) else repr(number) for number in numbers), point.status, *map(str, counts)]
 
 
 def frf_point(row: Mapping[str, str]) -> FrfPoint:

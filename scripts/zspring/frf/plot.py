@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from ..bench.measure import LEFT_OUT, NOT_SETTLED, FrfPoint
+from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
 from ..figures import new_figure
-from .measure import LEFT_OUT, NOT_SETTLED, FrfPoint
-from .quantities import QUANTITIES, as_quantity, phase_degrees
 
 BOUND_STYLES = {"locked": "--", "free": ":", "linear": "-."}
 BOUND_LABELS = {
@@ -57,9 +57,7 @@ def frf_figure(
         magnitude.semilogy(frequency[doubtful], np.abs(value[doubtful]), "o", color=color, fillstyle="none")
         missing = frequency[[p.status == LEFT_OUT for p in curve]]
         height = np.full(missing.shape, 0.02 + 0.022 * number)
-        magnitude.plot(
-            missing, height, "x", color=color, markersize=4, transform=magnitude.get_xaxis_transform()
-        )
+        magnitude.plot(missing, height, "x", color=color, markersize=4, transform=magnitude.get_xaxis_transform())
 
     handles = magnitude.get_legend_handles_labels()[0]
     for status, marker, label in (
@@ -69,19 +67,10 @@ def frf_figure(
         if any(point.status == status for point in points):
             handles.append(
                 Line2D(
-                    [],
-                    [],
-                    color="gray",
-                    linestyle="none",
-                    marker=marker,
-                    fillstyle="none",
-                    markersize=5,
-                    label=label,
+                    [], [], color="gray", linestyle="none", marker=marker, fillstyle="none", markersize=5, label=label
                 )
             )
-    magnitude.legend(
-        handles=handles, fontsize=8, ncols=2, title="peak acceleration of the head", title_fontsize=8
-    )
+    magnitude.legend(handles=handles, fontsize=8, ncols=2, title="peak acceleration of the head", title_fontsize=8)
     symbol = {"receptance": "|H|, receptance", "stiffness": "|1/H|, dynamic stiffness"}[quantity]
     magnitude.set(title=title, ylabel=f"{symbol}  [{QUANTITIES[quantity]}]")
     phase.set(xlabel="frequency  [Hz]", ylabel="phase  [deg]")

@@ -7,18 +7,16 @@ from datetime import datetime, timezone
 
 import numpy as np
 
+from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, FrfPoint, FrfSettings
+from ..bench.resonances import extremes
 from ..fmu import Fmu
-from .measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, FrfPoint, FrfSettings
 from ..receptance import receptance
-from .resonances import extremes
 from ..variables import Value, text, with_unit
 
 Curve = tuple[np.ndarray, np.ndarray]  # frequency (n,) in Hz, receptance (n,) in m/N
 
 
-def file_head(
-    fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], quantity: str
-) -> dict[str, str]:
+def file_head(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], quantity: str) -> dict[str, str]:
     """Everything that defines the numbers of an FRF file, and the date (UTC).
 
     `parameters` are all parameters of the FMU, calculated ones included.
@@ -47,9 +45,7 @@ def file_head(
 
 def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value]) -> str:
     """Title of the figure: what was measured and whether any number of the Z-spring is synthetic."""
-    suspension, friction = (
-        text(fmu.variables[name], parameters[name]) for name in ("suspension", "friction")
-    )
+    suspension, friction = (text(fmu.variables[name], parameters[name]) for name in ("suspension", "friction"))
     model = f"Z-spring, friction {friction}" if suspension == "ZSpring" else f"suspension {suspension}"
     course = "each point from rest" if settings.direction == "rest" else f"sweep {settings.direction}"
     synthetic = suspension != "Linear" and fmu.variables.synthetic(parameters)
@@ -71,15 +67,9 @@ def resonance_table(points: Sequence[FrfPoint], bounds: Mapping[str, Curve]) -> 
     measured = {}
     for amplitude in sorted({point.amplitude for point in points}):
         curve = sorted((p for p in points if p.amplitude == amplitude), key=lambda p: p.frequency)
-        measured[f"{amplitude:g} m/s2"] = (
-            np.array([p.frequency for p in curve]),
-            np.array([p.H for p in curve]),
-        )
+        measured[f"{amplitude:g} m/s2"] = (np.array([p.frequency for p in curve]), np.array([p.H for p in curve]))
     first, *last = curves.items()
-    rows = [
-        (name, *(_cells(found) for found in extremes(*curve)))
-        for name, curve in [first, *measured.items(), *last]
-    ]
+    rows = [(name, *(_cells(found) for found in extremes(*curve))) for name, curve in [first, *measured.items(), *last]]
     width = max(len(row[1]) for row in rows)
     return [
         f"{'':10s}  {'resonances, Hz (mm/N)':{width}s}  antiresonances, Hz (mm/N)",

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from ..bench.measure import BENCHES, FAILED, FrfPoint, FrfSettings, left_out, measure, sweeps
 from ..errors import ZSpringError
 from ..figures import save
 from ..fmu import Fmu
@@ -18,7 +19,6 @@ from ..interrupt import Interrupted, stop_on_interrupt
 from ..variables import Value, text
 from . import report
 from .files import FrfRecord, write_frf
-from .measure import BENCHES, FAILED, FrfPoint, FrfSettings, left_out, measure, sweeps
 from .plot import frf_figure
 
 MOST_DOUBTFUL_LINES = 10
@@ -46,9 +46,7 @@ def run_frf(
     points, speed = _measure(fmu, settings, record, jobs, "step")
     records, errors = [record], None
     if error_estimate:
-        finer = replace(
-            settings, parameters={**settings.parameters, "solver.step": parameters["solver.step"] / 2}
-        )
+        finer = replace(settings, parameters={**settings.parameters, "solver.step": parameters["solver.step"] / 2})
         finer_head = report.file_head(fmu, finer, all_parameters(fmu, finer), quantity)
         records.append(FrfRecord(folder / "frf.half-step.partial.csv", finer_head, quantity))
         finer_points, _ = _measure(fmu, finer, records[-1], jobs, "half step")
@@ -60,9 +58,7 @@ def run_frf(
     write_frf(csv_path, head, results, quantity, errors)
     suspension = text(fmu.variables["suspension"], parameters["suspension"])
     bounds = report.linear_bounds(settings, parameters, linear=suspension == "Linear")
-    figure = frf_figure(
-        results, bounds, quantity, settings.stroke, report.title(fmu, settings, parameters)
-    )
+    figure = frf_figure(results, bounds, quantity, settings.stroke, report.title(fmu, settings, parameters))
     save(figure, figure_path)
     for record in records:
         record.path.unlink()
@@ -85,9 +81,7 @@ def all_parameters(fmu: Fmu, settings: FrfSettings) -> dict[str, Value]:
     """All parameters that the FMU runs with, calculated ones included. Raises FmuError if it refuses one."""
     names = fmu.variables.names("parameter", "calculatedParameter")
     with fmu.instances() as (instance,):
-        BENCHES[settings.through](instance, settings.parameters).start(
-            settings.frequencies[0], settings.amplitudes[0]
-        )
+        BENCHES[settings.through](instance, settings.parameters).start(settings.frequencies[0], settings.amplitudes[0])
         return dict(zip(names, instance.get(names)))
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from ..bench.measured import Curve
+from ..bench.responses import phase_degrees
+from ..bench.static_test import StaticTest
 from ..figures import new_figure
-from ..frf.quantities import phase_degrees
-from .measured import Curve
 from .report import magnitude_error
-from .static_test import StaticTest
 
 
 def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], title: str) -> Figure:
@@ -32,12 +32,7 @@ def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], title: str
         phase.plot(curve.frequency, phase_degrees(curve.H, "receptance"), **points)
         phase.plot(curve.frequency, phase_degrees(H, "receptance"), **line)
         error.plot(
-            curve.frequency,
-            100 * magnitude_error(curve, H),
-            marker=".",
-            markersize=3,
-            color=color,
-            linewidth=0.6,
+            curve.frequency, 100 * magnitude_error(curve, H), marker=".", markersize=3, color=color, linewidth=0.6
         )
     handles = [
         Line2D([], [], color="gray", linestyle="none", marker="o", fillstyle="none", label="measured"),
@@ -60,9 +55,7 @@ def static_figure(test: StaticTest, force: np.ndarray, title: str) -> Figure:
     displacement = 1e3 * test.displacement
     axes.plot(displacement, test.force - test.force.mean(), "o", color="gray", markersize=3, label="measured")
     axes.plot(displacement, force - force.mean(), color="tab:blue", linewidth=1.2, label="fitted")
-    axes.set(
-        title=title, xlabel="displacement of the head  [mm]", ylabel="force on the head, mean removed  [N]"
-    )
+    axes.set(title=title, xlabel="displacement of the head  [mm]", ylabel="force on the head, mean removed  [N]")
     axes.grid(True, linewidth=0.4, alpha=0.5)
     axes.legend()
     return figure

@@ -8,13 +8,13 @@ from typing import Protocol
 
 import numpy as np
 
-from ..frf.quantities import as_quantity
+from ..bench.measured import Curve
+from ..bench.model import BenchModel, Periods
+from ..bench.responses import as_quantity
+from ..bench.static_test import StaticTest
 from ..receptance import receptance
 from ..variables import Value
-from .bench_model import BenchModel, Periods
-from .measured import Curve
 from .settings import Settings
-from .static_test import StaticTest
 
 # Residual of a point that the model could not compute: 10 in the logarithm, or 10 times the mean square.
 PENALTY = 10.0
@@ -83,8 +83,7 @@ class ZSpringModel:
         if self._static:
             forces = list(self._bench.static_forces(candidates, self._static))
         return [
-            Answer([H for H, _ in row], force, [periods for _, periods in row])
-            for row, force in zip(measured, forces)
+            Answer([H for H, _ in row], force, [periods for _, periods in row]) for row, force in zip(measured, forces)
         ]
 
     def with_curves(self, curves: Sequence[Curve]) -> ZSpringModel:
@@ -94,9 +93,7 @@ class ZSpringModel:
 class Problem:
     """Residuals of the model against all measured curves and the static test."""
 
-    def __init__(
-        self, settings: Settings, model: Model, curves: Sequence[Curve], static: StaticTest | None = None
-    ):
+    def __init__(self, settings: Settings, model: Model, curves: Sequence[Curve], static: StaticTest | None = None):
         self.settings, self.curves, self.static = settings, list(curves), static
         self._model = model
         self.relative_step, self.tolerance = model.relative_step, model.tolerance

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..bench.measured import Curve
 from ..fmu import Fmu
 from .fit import Fit
-from .measured import Curve
 from .problem import Problem
 
 STRONG_CORRELATION = 0.98
@@ -19,9 +19,7 @@ def parameter_table(fmu: Fmu, problem: Problem, fit: Fit) -> list[str]:
     rows = [["", "fitted", "std. error", "unit", "start", "bounds", ""]]
     for i, free in enumerate(problem.settings.free):
         error = fit.standard_error[i]
-        relative = (
-            f" ({100 * error / abs(fit.values[i]):.2g} %)" if fit.values[i] and np.isfinite(error) else ""
-        )
+        relative = f" ({100 * error / abs(fit.values[i]):.2g} %)" if fit.values[i] and np.isfinite(error) else ""
         rows.append(
             [
                 free.name,
@@ -44,18 +42,14 @@ def doubts(problem: Problem, fit: Fit) -> list[str]:
         error, half_range = fit.unbound_error[i], (parameter.maximum - parameter.minimum) / 2
         place = f", at its bound {fit.values[i]:g}" if fit.at_bound[i] else ""
         if np.isinf(error):
-            lines.append(
-                f"the data do not determine {parameter.name}{place}: no effect of its own on the fit"
-            )
+            lines.append(f"the data do not determine {parameter.name}{place}: no effect of its own on the fit")
         elif error > half_range:
             lines.append(
                 f"the data do not determine {parameter.name}{place}: its standard error {error:.2g} is more "
                 "than half the range between its bounds"
             )
         elif fit.at_bound[i]:
-            lines.append(
-                f"{parameter.name} is at its bound {fit.values[i]:g}: the data want it there or beyond"
-            )
+            lines.append(f"{parameter.name} is at its bound {fit.values[i]:g}: the data want it there or beyond")
     for i in range(len(free)):
         for j in range(i):
             if abs(fit.correlation[i, j]) > STRONG_CORRELATION:

@@ -13,6 +13,9 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from ..bench.measured import in_band, read_curves, sign_warning
+from ..bench.model import BenchModel
+from ..bench.static_test import read_static_test
 from ..errors import ZSpringError
 from ..figures import save
 from ..fmu import Fmu
@@ -21,14 +24,11 @@ from ..parameter_sets import write_set
 from ..tables import write_head
 from ..variables import Value, parse, with_unit
 from . import report
-from .bench_model import BenchModel
 from .fit import Fit, fit
-from .measured import in_band, read_curves, sign_warning
 from .plot import fit_figure, static_figure
-from .problem import ThreeMassModel, Problem, ZSpringModel
+from .problem import Problem, ThreeMassModel, ZSpringModel
 from .search import CostRecord, search
 from .settings import LINEAR_PARAMETERS, Settings
-from .static_test import read_static_test
 
 # Of the bench, the line and the solver, so not of a pantograph.
 OTHER_PARAMETERS = ("drive", "bench.", "contact.", "solver.")
@@ -107,10 +107,7 @@ def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[
     """
     settings = problem.settings
     coarse = problem.thinned(settings.search.points)
-    files = [
-        *(source.path for source in settings.sources),
-        *([settings.static.path] if settings.static else []),
-    ]
+    files = [*(source.path for source in settings.sources), *([settings.static.path] if settings.static else [])]
     head = {
         "FMU": fmu.sha256,
         "settings": repr(replace(settings, text="")),
@@ -178,9 +175,7 @@ def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Valu
     remarks |= {name: f"tied to {to}" for name, (to, _) in settings.tied.items()}
     files = ", ".join(source.path.name for source in settings.sources)
     date = datetime.now(timezone.utc).strftime("%Y-%m-%d")
-    description = (
-        f"Identified from {files} on {date}, {settings.model} model; see {path.parent.name}/identify.log"
-    )
+    description = f"Identified from {files} on {date}, {settings.model} model; see {path.parent.name}/identify.log"
     write_set(path, fmu, {name: values[name] for name in names}, path.stem, description, remarks)
     return path
 
@@ -193,10 +188,7 @@ def _write_points(fmu: Fmu, problem: Problem, result: Fit, path: Path) -> Path:
         "model": settings.model,
         "error": settings.error,
         "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
-        **{
-            name: with_unit(fmu.variables[name], value)
-            for name, value in settings.parameters(result.x).items()
-        },
+        **{name: with_unit(fmu.variables[name], value) for name, value in settings.parameters(result.x).items()},
     }
     columns = ["frequency [Hz]", "amplitude [m/s2]"]
     columns += [f"{kind}_{part} [m/N]" for kind in ("measured", "fitted") for part in ("re", "im")]

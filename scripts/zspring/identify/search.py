@@ -70,8 +70,7 @@ def search(
         costs = problem.costs(xs)
         if stop.is_set():
             raise Interrupted(
-                f"interrupted; the global search so far is kept in {record.path}; "
-                "the same command goes on from there"
+                f"interrupted; the global search so far is kept in {record.path}; the same command goes on from there"
             )
         return costs
 

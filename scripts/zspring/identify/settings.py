@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..bench.measure import BENCH_PARAMETERS
+from ..bench.measured import Source
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..frf.measure import BENCH_PARAMETERS
 from ..parameter_sets import find_set, packaged_sets, read_set
 from ..toml_tables import Table, flatten, has_table, is_plain, read_toml
 from ..variables import Value, parse
-from .measured import Source
 
 LINEAR_PARAMETERS = ("m1", "m2", "m3", "c1", "c2", "c3", "k1", "k2", "k3")
 # At the FMU's own step of 2 ms HHT's error near 12 Hz would go into the parameters: 1.6 % of zspring.l0.
@@ -191,12 +191,7 @@ def _settings(
 
 
 def _fixed(
-    path: Path,
-    table: Table,
-    fmu: Fmu,
-    parameter_set: str | None,
-    assignments: tuple[str, ...],
-    linear: bool,
+    path: Path, table: Table, fmu: Fmu, parameter_set: str | None, assignments: tuple[str, ...], linear: bool
 ) -> tuple[dict[str, Value], dict[str, Value]]:
     """Parameters given by set, file and command line, the last before the first; and those not of the set."""
     own_set = table.text("parameters", "")

@@ -58,17 +58,13 @@ class Cluster:
             try:
                 self.client.register_plugin(_ByValue(plugin), name=name)
             except Exception as error:  # whatever went wrong over there
-                raise ZSpringError(
-                    f"the workers cannot run the study: {type(error).__name__}: {error}"
-                ) from None
+                raise ZSpringError(f"the workers cannot run the study: {type(error).__name__}: {error}") from None
             yield name
         finally:
             with suppress(OSError):  # a scheduler that is gone, and its workers, have forgotten it, too
                 self.client.unregister_worker_plugin(name)
 
-    def run(
-        self, study: str, cases: Mapping[int, Case], stop: threading.Event
-    ) -> Iterator[tuple[int, Result]]:
+    def run(self, study: str, cases: Mapping[int, Case], stop: threading.Event) -> Iterator[tuple[int, Result]]:
         """Results by number of the case, as they finish. Ends early once `stop` is set.
 
         Cases whose worker dies are run again on another one. After some deaths (Dask's setting

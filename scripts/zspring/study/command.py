@@ -24,10 +24,7 @@ NEEDED = ("distributed", "SALib", "pyarrow")
     "workers need distributed, fmpy, numpy and the Python version from here; FMU and code are sent to them.",
 )
 @click.option(
-    "--workers",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Local processes.  [default: number of processors]",
+    "--workers", type=click.IntRange(min=1), metavar="N", help="Local processes.  [default: number of processors]"
 )
 @click.option(
     "--timeout",

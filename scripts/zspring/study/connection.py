@@ -34,13 +34,7 @@ def connected(scheduler: str | None, workers: int, timeout: float) -> Iterator[C
     """
     with ExitStack() as stack:
         stack.enter_context(dask.config.set(QUIET))
-        for name in (
-            "asyncio",
-            "distributed",
-            "distributed.client",
-            "distributed.scheduler",
-            "distributed.nanny",
-        ):
+        for name in ("asyncio", "distributed", "distributed.client", "distributed.scheduler", "distributed.nanny"):
             logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is said here in one line
         if scheduler:
             _check_scheduler(scheduler, timeout)

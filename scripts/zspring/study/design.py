@@ -43,9 +43,7 @@ def make_cases(settings: StudySettings) -> list[Case]:
     if settings.design == "sobol":
         from SALib.sample import sobol
 
-        positions = sobol.sample(
-            unit_problem(names), settings.samples, calc_second_order=False, seed=settings.seed
-        )
+        positions = sobol.sample(unit_problem(names), settings.samples, calc_second_order=False, seed=settings.seed)
     else:
         from scipy.stats import qmc
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from ..figures import new_figure
-from .summary import Envelope, SobolIndices
+from .report import Envelope, SobolIndices
 
 
 def envelope_figure(envelopes: Sequence[Envelope], cases: int, title: str) -> Figure:
@@ -21,9 +21,7 @@ def envelope_figure(envelopes: Sequence[Envelope], cases: int, title: str) -> Fi
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, envelope in zip(panels.flat, envelopes):
         low, low_band, median, high_band, high = envelope.percentiles
-        axes.fill_between(
-            envelope.frequency, low, high, color="C0", alpha=0.18, linewidth=0, label="all cases"
-        )
+        axes.fill_between(envelope.frequency, low, high, color="C0", alpha=0.18, linewidth=0, label="all cases")
         axes.fill_between(
             envelope.frequency, low_band, high_band, color="C0", alpha=0.35, linewidth=0, label="5 to 95 %"
         )

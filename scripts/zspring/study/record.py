@@ -25,11 +25,7 @@ class StudyRecord:
     """
 
     def __init__(
-        self,
-        path: Path,
-        head: Mapping[str, str],
-        parameters: Sequence[Mapping[str, str]],
-        columns: Sequence[str],
+        self, path: Path, head: Mapping[str, str], parameters: Sequence[Mapping[str, str]], columns: Sequence[str]
     ):
         self.path, self.head, self._parameters = path, dict(head), parameters
         self.columns = [NUMBER, STATUS, SECONDS, *parameters[0], *dict.fromkeys(columns)]
@@ -62,7 +58,7 @@ class StudyRecord:
             key: " ".join(value.split()) if isinstance(value, str) else "" if value != value else repr(value)
             for key, value in result.items()
         }
-        row = {column: "" for column in self.columns}
+        row = dict.fromkeys(self.columns, "")
         row |= {NUMBER: str(number), **self._parameters[number], **texts}
         self.rows[number] = row
         self._writer.writerow(row.values())
@@ -104,7 +100,5 @@ class StudyRecord:
                 or not number.isdigit()
                 or (int(number) >= len(self._parameters))
             ):
-                raise ZSpringError(
-                    f"{self.path}, row {line} of the table: is not as it was written; remove the file"
-                )
+                raise ZSpringError(f"{self.path}, row {line} of the table: is not as it was written; remove the file")
             self.rows[int(number)] = row

@@ -14,11 +14,11 @@ from ..figures import save
 from ..fmu import Fmu, FmuError
 from ..interrupt import Interrupted, stop_on_interrupt
 from ..variables import Value, text, with_unit
-from . import summary
+from . import report
 from .connection import connected
 from .design import Case, make_cases
+from .evaluations import FrfQuantity
 from .plot import envelope_figure, sobol_figure
-from .quantities import FrfQuantity
 from .record import STATUS, StudyRecord
 from .settings import StudySettings, read_study
 
@@ -26,14 +26,7 @@ MOST_FAILED_LINES = 10
 
 
 def run_study(
-    fmu: Fmu,
-    path: Path,
-    folder: Path,
-    scheduler: str | None,
-    workers: int,
-    timeout: float,
-    suffix: str,
-    parquet: bool,
+    fmu: Fmu, path: Path, folder: Path, scheduler: str | None, workers: int, timeout: float, suffix: str, parquet: bool
 ) -> None:
     """Run the cases of the study at `path` that the folder has no result of, write and print all results.
 
@@ -61,7 +54,7 @@ def run_study(
     if missing:
         speed = _measure(fmu, settings, cases, record, missing, scheduler, workers, timeout)
     record.finish()
-    lines = _report(fmu, settings, record, parameters, suffix, parquet)
+    lines = _write_results(fmu, settings, record, parameters, suffix, parquet)
     print(speed, *lines, sep="\n")
     lost, failed = record.missing, record.failed
     for number, reason in failed[:MOST_FAILED_LINES]:
@@ -69,9 +62,7 @@ def run_study(
     if len(failed) > MOST_FAILED_LINES:
         print(f"and {len(failed) - MOST_FAILED_LINES} more, see {record.path}", file=sys.stderr)
     if lost:
-        raise ZSpringError(
-            f"{len(lost)} cases were lost with their workers; the same command runs them again"
-        )
+        raise ZSpringError(f"{len(lost)} cases were lost with their workers; the same command runs them again")
     if len(failed) == len(cases):
         raise ZSpringError(f"all {len(cases)} cases failed")
 
@@ -118,13 +109,8 @@ def _measure(
     )
 
 
-def _report(
-    fmu: Fmu,
-    settings: StudySettings,
-    record: StudyRecord,
-    parameters: dict[str, Value],
-    suffix: str,
-    parquet: bool,
+def _write_results(
+    fmu: Fmu, settings: StudySettings, record: StudyRecord, parameters: dict[str, Value], suffix: str, parquet: bool
 ) -> list[str]:
     """Write figures and tables of all results; the lines to print about them."""
     folder, rows, written = record.path.parent, record.rows, [record.path]
@@ -132,30 +118,26 @@ def _report(
     title = f"Parameter study, {settings.design}, of {', '.join(settings.vary)}"
     if fmu.variables.synthetic(parameters):
         title += "; Z-spring parameters synthetic"
-    lines = summary.spread_table(scalars, rows)
+    lines = report.spread_table(scalars, rows)
     for quantity in settings.quantities:
         if isinstance(quantity, FrfQuantity):
-            figure = envelope_figure(summary.envelopes(quantity, rows), len(rows), title)
+            figure = envelope_figure(report.envelopes(quantity, rows), len(rows), title)
             written.append(folder / f"envelope.{suffix}")
             save(figure, written[-1])
     if settings.design == "sobol":
-        found = summary.sobol_indices(settings, scalars, rows)
+        found = report.sobol_indices(settings, scalars, rows)
         if found:
-            lines += summary.sobol_table(settings, found)
+            lines += report.sobol_table(settings, found)
             written += [folder / "sobol.csv", folder / f"sobol.{suffix}"]
-            summary.write_sobol(written[-2], record.head, settings, found)
+            report.write_sobol(written[-2], record.head, settings, found)
             save(sobol_figure(found, list(settings.vary), title), written[-1])
-        incomplete = summary.incomplete_blocks(settings, rows)
+        incomplete = report.incomplete_blocks(settings, rows)
         if incomplete:
-            lines.append(
-                f"Sobol indices without {incomplete} of {settings.samples} blocks, which have failed cases"
-            )
+            lines.append(f"Sobol indices without {incomplete} of {settings.samples} blocks, which have failed cases")
     if parquet:
         written.append(folder / "study.parquet")
-        enumerations = [
-            name for name in settings.vary if fmu.variables[name].type in ("Enumeration", "Boolean")
-        ]
-        summary.write_parquet(written[-1], record.head, record.columns, rows, [STATUS, *enumerations])
+        enumerations = [name for name in settings.vary if fmu.variables[name].type in ("Enumeration", "Boolean")]
+        report.write_parquet(written[-1], record.head, record.columns, rows, [STATUS, *enumerations])
     return [*lines, " ".join(map(str, ["written:", *written]))]
 
 

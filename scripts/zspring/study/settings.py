@@ -26,12 +26,12 @@ from typing import Any
 import click
 from fmpy.model_description import ScalarVariable
 
+from ..bench.measure import BENCH_PARAMETERS, LOOK_PERIODS, FrfSettings
 from ..errors import ZSpringError
-from ..frf.measure import BENCH_PARAMETERS, LOOK_PERIODS, FrfSettings
 from ..options import Numbers
 from ..toml_tables import Table, flatten, is_number, read_toml
 from ..variables import Value, Variables, parse, text
-from .quantities import FrfQuantity, Quantity, StaticQuantity
+from .evaluations import FrfQuantity, Quantity, StaticQuantity
 
 DESIGNS = ("grid", "list", "latin-hypercube", "sobol")
 SAMPLED = DESIGNS[2:]
@@ -174,9 +174,7 @@ def _frf(table: Table) -> FrfQuantity:
     band = table.band("resonance_band")
     table.finish()
     if settings.max_periods < settings.min_periods:
-        raise ZSpringError(
-            f"[frf] max_periods = {settings.max_periods}: must be {settings.min_periods} or more"
-        )
+        raise ZSpringError(f"[frf] max_periods = {settings.max_periods}: must be {settings.min_periods} or more")
     quantity = FrfQuantity(settings, band)
     if not quantity.points:
         raise ZSpringError(f"[frf]: all points need more stroke than {settings.stroke:g} m")
@@ -219,9 +217,7 @@ def _value(variables: Variables, name: str, value: Any, where: str) -> Value:
     return number
 
 
-def _numbers(
-    table: Table, where: str, key: str, default: tuple[float, ...] | None = None
-) -> tuple[float, ...]:
+def _numbers(table: Table, where: str, key: str, default: tuple[float, ...] | None = None) -> tuple[float, ...]:
     """Positive numbers, ascending: a list, or a text as on the command line."""
     value = table.content.get(key, default)
     if isinstance(value, (list, tuple)):

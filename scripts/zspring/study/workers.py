@@ -20,7 +20,7 @@ from distributed.diagnostics.plugin import WorkerPlugin
 from ..errors import ZSpringError
 from ..fmu import Fmu, Instance
 from ..variables import Value
-from .quantities import Quantity
+from .evaluations import Quantity
 
 OK, FAILED = "ok", "failed"
 
@@ -36,9 +36,7 @@ class StudyPlugin(WorkerPlugin):
     Setting up raises ZSpringError if the FMU cannot run there.
     """
 
-    def __init__(
-        self, name: str, content: bytes, common: Mapping[str, Value], quantities: Sequence[Quantity]
-    ):
+    def __init__(self, name: str, content: bytes, common: Mapping[str, Value], quantities: Sequence[Quantity]):
         self.name = name
         self._content, self._common, self._quantities = content, dict(common), tuple(quantities)
 

@@ -1,0 +1,185 @@
+"""First-order FRF by stepped sine with controlled response: every point is run until it is steady.
+
+H = -Z/F with Z and F the components at the drive frequency of head displacement and contact force. The head's
+peak acceleration is the amplitude, so that its displacement peak is amplitude / (2 pi f)^2.
+"""
+
+from __future__ import annotations
+
+import math
+import queue
+import threading
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..fmu import Fmu, StepDiscarded
+from ..variables import Value
+from .fmu_bench import FmuBench
+from .input_bench import InputBench
+
+Bench = FmuBench | InputBench
+BENCHES: dict[str, type[Bench]] = {"bench": FmuBench, "inputs": InputBench}
+BENCH_PARAMETERS = ("drive", "bench.frequency", "bench.acceleration")  # set by the measurement itself
+LOOK_PERIODS = 4  # periods between two looks at the steady-state criterion
+
+SETTLED, NOT_SETTLED, LEFT_OUT, FAILED = "settled", "not settled", "left out", "failed"
+
+
+@dataclass(frozen=True)
+class FrfSettings:
+    """What to measure, by default the standard figure; everything here changes the numbers."""
+
+    amplitudes: tuple[float, ...] = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)  # m/s2, peak acceleration
+    frequencies: tuple[float, ...] = tuple(i / 4 for i in range(2, 81))  # Hz, ascending
+    parameters: Mapping[str, Value] = field(default_factory=dict)  # of the FMU
+    direction: str = "up"  # "up", "down", or "rest": each point from the static state
+    through: str = "bench"  # key of BENCHES
+    tolerance: float = 1e-3  # largest relative change of H, see settle
+    min_periods: int = 8
+    max_periods: int = 400
+    stroke: float = 0.1  # m, largest displacement peak
+
+
+@dataclass(frozen=True)
+class FrfPoint:
+    """One point; H in m/N and its change are NaN where nothing was measured, and where it failed."""
+
+    amplitude: float  # m/s2
+    frequency: float  # Hz
+    status: str
+    H: complex = complex(math.nan, math.nan)
+    periods: int = 0
+    change: float = math.nan
+    steps: int = 0  # internal steps, Newton iterations and step halvings this point took
+    iterations: int = 0
+    refinements: int = 0
+    iterations_max: int = 0  # of the worst step since the sweep began
+
+    @property
+    def displacement(self) -> float:
+        """Peak displacement of the head in m."""
+        return self.amplitude / (2 * math.pi * self.frequency) ** 2
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Points that one instance measures one after the other, from `state` of the bench or from rest."""
+
+    amplitude: float
+    frequencies: tuple[float, ...]
+    state: Mapping[str, Any] | None = None
+
+
+def left_out(settings: FrfSettings) -> list[FrfPoint]:
+    """The points that need more stroke than there is."""
+    points = (FrfPoint(a, f, LEFT_OUT) for a in settings.amplitudes for f in settings.frequencies)
+    return [point for point in points if point.displacement > settings.stroke]
+
+
+def sweeps(settings: FrfSettings) -> list[Sweep]:
+    """All sweeps of the figure: one for each amplitude, or one for each point with direction "rest"."""
+    result = []
+    for amplitude in settings.amplitudes:
+        frequencies = tuple(
+            f for f in settings.frequencies if FrfPoint(amplitude, f, "").displacement <= settings.stroke
+        )
+        if settings.direction == "rest":
+            result += [Sweep(amplitude, (frequency,)) for frequency in frequencies]
+        elif frequencies:
+            result.append(Sweep(amplitude, frequencies if settings.direction == "up" else frequencies[::-1]))
+    return result
+
+
+def measure(
+    fmu: Fmu, settings: FrfSettings, todo: list[Sweep], jobs: int, stop: threading.Event
+) -> Iterator[tuple[FrfPoint, dict[str, Any] | None]]:
+    """Points as they get ready, each with the bench's state, None where the next one starts from rest.
+
+    `jobs` sweeps run at a time, each on an instance of its own. Ends early once `stop` is set.
+    Raises FmuError when the FMU refuses a parameter.
+    """
+    waiting: queue.SimpleQueue = queue.SimpleQueue()
+    finished: queue.SimpleQueue = queue.SimpleQueue()
+    for sweep in todo:
+        waiting.put(sweep)
+
+    def work(bench: Bench) -> None:
+        try:
+            while not stop.is_set():
+                for result in run_sweep(bench, waiting.get_nowait(), settings, stop):
+                    finished.put(result)
+        except queue.Empty:
+            pass
+        except BaseException as error:
+            finished.put(error)
+        finally:
+            finished.put(None)
+
+    jobs = max(1, min(jobs, len(todo)))
+    with fmu.instances(jobs) as instances, ThreadPoolExecutor(jobs) as pool:
+        for instance in instances:
+            pool.submit(work, BENCHES[settings.through](instance, settings.parameters))
+        try:
+            running = jobs
+            while running:
+                result = finished.get()
+                if result is None:
+                    running -= 1
+                elif isinstance(result, BaseException):
+                    raise result
+                else:
+                    yield result
+        except BaseException:
+            stop.set()
+            raise
+
+
+def run_sweep(
+    bench: Bench, sweep: Sweep, settings: FrfSettings, stop: threading.Event
+) -> Iterator[tuple[FrfPoint, dict[str, Any] | None]]:
+    """The points of one sweep, until `stop` is set; after a failed one it goes on from rest."""
+    state = sweep.state
+    if state:
+        bench.load(state)
+    for frequency in sweep.frequencies:
+        go = bench.tune if state else bench.start
+        go(frequency, sweep.amplitude)
+        point = settle(bench, sweep.amplitude, frequency, settings, stop)
+        if point is None:
+            return
+        keep = settings.direction != "rest" and not point.status.startswith(FAILED)
+        state = bench.save() if keep else None
+        yield point, state
+
+
+def settle(
+    bench: Bench, amplitude: float, frequency: float, settings: FrfSettings, stop: threading.Event
+) -> FrfPoint | None:
+    """Run until H is steady or the most periods allowed have passed; None if stopped before.
+
+    Steady: H differs from that of the period before and from that of the last look by at most the tolerance,
+    relatively. The second look rules out that a slow drift or a beat passes for steady in one of its turns.
+    """
+    counters = ("solver.steps", "solver.iterations", "solver.refinements")
+    before = bench.instance.get(counters)
+    nothing = complex(math.nan, math.nan), math.nan
+    status, (H, change) = NOT_SETTLED, nothing
+    try:
+        bench.run(1 + LOOK_PERIODS)
+        while status == NOT_SETTLED and bench.periods < settings.max_periods:
+            if stop.is_set():
+                return None
+            last = bench.H
+            bench.run(LOOK_PERIODS)
+            H, change = bench.H, bench.change
+            drift = abs(H - last) / abs(H) if H else 1.0
+            if bench.periods >= settings.min_periods and max(change, drift) <= settings.tolerance:
+                status = SETTLED
+    except StepDiscarded as error:
+        status, (H, change) = f"{FAILED}: {error}", nothing
+    used = (after - earlier for earlier, after in zip(before, bench.instance.get(counters)))
+    return FrfPoint(
+        amplitude, frequency, status, H, bench.periods, change, *used, *bench.instance.get(["solver.iterations_max"])
+    )

@@ -1,0 +1,105 @@
+"""Where, how fast and how the pantographs run along a line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import ZSpringError
+from ..fmu import Fmu
+from ..variables import Value, parse
+
+MOST_PANTOGRAPHS = 2
+START_UPS = "ramp", "direct"
+MASSES = "head", "upper_frame", "lower_frame"
+
+
+@dataclass(frozen=True)
+class Journey:
+    """Where and how the pantographs run.
+
+    speed       m/s
+    start       of the first pantograph, m along the line; None: half a span from where all can be in the line
+    stop        where the first pantograph ends, m; None: half a span before the line's end
+    step        communication step, s
+    spacing     from the first pantograph back to the second, m
+    start_up    "ramp": the run begins at rest, with the wire as static_force lifts it at the start. This lift is
+                taken off the height that the pantographs see and comes back as a half cosine over the first
+                span, as the uplift forces do; from then on static_force is the force at height 0.
+                "direct": the lift stays off for the whole run, and the uplift forces act at once.
+    uplift      extra upward force on each pantograph, N
+    uplift_on   the mass it acts on: "head", "upper_frame" or "lower_frame"
+    """
+
+    speed: float
+    start: float | None = None
+    stop: float | None = None
+    step: float = 1e-3
+    spacing: float = 0.0
+    start_up: str = "ramp"
+    uplift: float = 0.0
+    uplift_on: str = "upper_frame"
+
+
+@dataclass(frozen=True)
+class LineExtent:
+    """Spans of a line, and what fits into it."""
+
+    spans: int
+    span: float  # m
+
+    @classmethod
+    def of(cls, catenary: Fmu, line: Mapping[str, Value]) -> LineExtent:
+        return cls(parameter_value(catenary, line, "line.spans"), parameter_value(catenary, line, "line.span"))
+
+    @property
+    def length(self) -> float:
+        return self.spans * self.span
+
+    @property
+    def supports(self) -> np.ndarray:
+        """Positions of the supports inside the line, m. (spans - 1,)"""
+        return self.span * np.arange(1, self.spans)
+
+    def complete(self, journey: Journey, count: int) -> Journey:
+        """The journey with its start and stop. Raises ZSpringError where it does not fit the line."""
+        if not 1 <= count <= MOST_PANTOGRAPHS:
+            raise ZSpringError(f"{count} pantographs: must be 1 or {MOST_PANTOGRAPHS}")
+        if journey.start_up not in START_UPS:
+            raise ZSpringError(f"start-up {journey.start_up!r}: must be {' or '.join(START_UPS)}")
+        if journey.uplift_on not in MASSES:
+            raise ZSpringError(f"uplift on {journey.uplift_on!r}: must be on {', '.join(MASSES[:-1])} or {MASSES[-1]}")
+        for name, unit in ("speed", "m/s"), ("step", "s"):
+            value = getattr(journey, name)
+            if not (math.isfinite(value) and value > 0):
+                raise ZSpringError(f"{name} = {value:g} {unit}: must be above 0")
+        if not math.isfinite(journey.uplift):
+            raise ZSpringError(f"uplift = {journey.uplift:g} N: must be finite")
+        behind = journey.spacing if count > 1 else 0.0
+        if count > 1 and not 0 < behind < self.length:
+            raise ZSpringError(
+                f"spacing = {behind:g} m: must be above 0 and below the line's length, {self.length:g} m"
+            )
+        start = behind + self.span / 2 if journey.start is None else journey.start
+        stop = self.length - self.span / 2 if journey.stop is None else journey.stop
+        if not behind <= start < self.length:
+            others = f" with a pantograph {behind:g} m behind" if behind else ""
+            raise ZSpringError(f"start = {start:g} m: must be in {behind:g} .. {self.length:g} m{others}")
+        if not start < stop <= self.length:
+            raise ZSpringError(
+                f"stop = {stop:g} m: must be above the start, {start:g} m, and in the line of {self.length:g} m"
+            )
+        if stop - start < journey.speed * journey.step * (1 - 1e-9):
+            raise ZSpringError(
+                f"step = {journey.step:g} s: is longer than the run of {(stop - start) / journey.speed:g} s"
+            )
+        return replace(journey, start=start, stop=stop, spacing=behind)
+
+
+def parameter_value(fmu: Fmu, parameters: Mapping[str, Value], name: str) -> Value:
+    """A parameter as given, else the FMU's own."""
+    variable = fmu.variables[name]
+    return parameters.get(name, parse(variable, variable.start))

@@ -1,0 +1,54 @@
+"""What is kept of every communication point of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .calls import PreparedCalls
+from .result import LineResult
+
+
+class Recorder:
+    """What is kept of every communication point."""
+
+    def __init__(self, rows: int, wire: PreparedCalls, heads: Sequence[PreparedCalls], supports: np.ndarray):
+        count = len(heads)
+        names = [f"pantograph[{i + 1}].{name}" for name in ("x", "wire_height") for i in range(count)]
+        names += [f"support.uplift[{i + 2}]" for i in range(len(supports))]  # the first is the anchor
+        self._supports = supports
+        self._wire, self._slack = wire.reals(names), wire.integers(["droppers.slack"])
+        self._heads = [
+            head.reals(["contact.force", "head.z", "zspring.moment_alpha", "zspring.moment_beta"]) for head in heads
+        ]
+        self._wire_rows = np.empty((rows, len(names)))
+        self._slack_rows = np.empty(rows, dtype=int)
+        self._head_rows = np.empty((rows, count, 4))
+
+    def take(self, row: int, shifts: Sequence[float]) -> None:
+        """Keep the FMUs' outputs as they are now."""
+        self._wire_rows[row] = self._wire.get()
+        self._slack_rows[row] = self._slack()[0]
+        for i, head in enumerate(self._heads):
+            values = head.get()
+            values[1] += shifts[i]
+            self._head_rows[row, i] = values
+
+    def result(self, rows: slice, step: float, settings: dict[str, str], elapsed: float) -> LineResult:
+        """The result of the rows taken."""
+        wire, slack, heads = self._wire_rows[rows], self._slack_rows[rows], self._head_rows[rows]
+        count = heads.shape[1]
+        return LineResult(
+            time=step * np.arange(len(slack)),
+            position=wire[:, :count],
+            contact_force=heads[:, :, 0],
+            wire_height=wire[:, count : 2 * count],
+            head_height=heads[:, :, 1],
+            support_position=self._supports,
+            support_uplift=wire[:, 2 * count :],
+            slack_droppers=slack,
+            moment=heads[:, :, 2:],
+            settings=settings,
+            elapsed=elapsed,
+        )

@@ -1,0 +1,105 @@
+"""The static study from settings to result folder."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from tqdm import tqdm
+
+from ..bench.loops import CLAMP, Loop, measure_loop
+from ..errors import ZSpringError
+from ..figures import save
+from ..files import study_head, synthetic_note, used_parameters, write_table
+from ..fmu import Fmu
+from ..interrupt import Interrupted, stop_on_interrupt
+from ..variables import Value, text
+from .plot import LAW_STYLES, static_figure
+
+
+def run_static(
+    fmu: Fmu,
+    parameters: Mapping[str, Value],
+    amplitudes: Sequence[float],
+    rates: Sequence[float],
+    folder: Path,
+    suffix: str,
+) -> None:
+    """Measure all loops, amplitudes in m and rates in m/s; write stiffness.csv, loops.csv and the figure.
+
+    Raises ZSpringError for a suspension without friction, FmuError when the FMU refuses a parameter,
+    Interrupted after Ctrl-C (the loops so far are kept).
+    """
+    used = used_parameters(fmu, parameters)
+    suspension = text(fmu.variables["suspension"], used["suspension"])
+    if suspension != "ZSpring":
+        raise ZSpringError(f"suspension = {suspension}: must be ZSpring, the others have no friction")
+    cases = [(law, rate, amplitude) for law in LAW_STYLES for rate in rates for amplitude in amplitudes]
+    loops: list[Loop] = []
+    with fmu.instances() as (instance,), stop_on_interrupt() as stop:
+        for case in tqdm(cases, unit=" loops", disable=None):
+            loops.append(measure_loop(instance, parameters, *case))
+            if stop.is_set():
+                break
+    paths = _write(fmu, used, loops, folder)
+    if len(loops) < len(cases):
+        raise Interrupted(f"interrupted after {len(loops)} of {len(cases)} loops, kept in {folder}")
+    paths.append(folder / f"static.{suffix}")
+    title = f"Head suspension under slow loading{synthetic_note(fmu, used)}"
+    save(static_figure(loops, used, title), paths[-1])
+    print(*_table(loops, used), sep="\n")
+    print("written:", *paths)
+
+
+def _write(fmu: Fmu, used: Mapping[str, Value], loops: Sequence[Loop], folder: Path) -> list[Path]:
+    own = {"clamped frame": f"k2 = k3 = {CLAMP} N/m while measuring"}
+    listed = {
+        name: value for name, value in used.items() if name not in ("drive", "friction", "k2", "k3", "solver.step")
+    }
+    head = study_head(fmu, listed, own)
+    stiffness, curves = folder / "stiffness.csv", folder / "loops.csv"
+    key = ["friction", "rate [m/s]", "amplitude [m]"]
+    write_table(
+        stiffness,
+        head,
+        [*key, "stiffness [N/m]", "dissipated in a cycle [J]"],
+        ([x.law, x.rate, x.amplitude, x.stiffness, x.dissipated] for x in loops),
+    )
+    write_table(
+        curves,
+        head,
+        [*key, "compression [m]", "force [N]"],
+        (
+            [x.law, x.rate, x.amplitude, compression, force]
+            for x in loops
+            for compression, force in zip(x.compression, x.force)
+        ),
+    )
+    return [stiffness, curves]
+
+
+def _table(loops: Sequence[Loop], used: Mapping[str, Value]) -> list[str]:
+    """Equivalent stiffness by law, rate and amplitude, and how much of it is the rate's doing."""
+    found = {(loop.law, loop.rate, loop.amplitude): loop.stiffness for loop in loops}
+    amplitudes = sorted({amplitude for _, _, amplitude in found})
+    rates = sorted({rate for _, rate, _ in found})
+    locked, free = used["zspring.k_locked"], used["zspring.k_free"]
+    lines = [
+        f"equivalent stiffness in N/mm; {1e-3 * locked:.3f} with locked, {1e-3 * free:.3f} with free rods",
+        f"{'amplitude, mm':<22}" + "".join(f"{1e3 * a:>7g}" for a in amplitudes),
+    ]
+    for law in LAW_STYLES:
+        for rate in rates:
+            cells = "".join(f"{1e-3 * found[law, rate, a]:>7.3f}" for a in amplitudes)
+            lines.append(f"{f'{law}, {1e3 * rate:g} mm/s':<22}" + cells)
+    if len(rates) > 1:
+        spread = {
+            law: max(
+                max(found[law, r, a] for r in rates) / min(found[law, r, a] for r in rates) - 1 for a in amplitudes
+            )
+            for law in LAW_STYLES
+        }
+        lines.append(
+            "largest change with the rate: " + ", ".join(f"{law} {100 * x:.1f} %" for law, x in spread.items())
+        )
+    return lines

@@ -1,1 +1,0 @@
-"""The published claims about the pantograph, one command each."""

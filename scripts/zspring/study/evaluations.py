@@ -1,0 +1,139 @@
+"""What a study computes for one case. This runs on the workers, so it needs only fmpy and numpy."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..bench.fmu_bench import FmuBench
+from ..bench.loops import measure_loop
+from ..bench.measure import FAILED, NOT_SETTLED, FrfSettings, run_sweep, sweeps
+from ..bench.resonances import extremes
+from ..fmu import Instance
+from ..variables import Value, parse, text
+
+NOT_SETTLED_COLUMN = "not settled"
+
+
+@dataclass(frozen=True)
+class FrfQuantity:
+    """First-order FRF by amplitude, and the highest resonance within a band (Hz)."""
+
+    settings: FrfSettings  # its `parameters` stay empty: each case has its own
+    band: tuple[float, float]
+
+    @property
+    def points(self) -> list[tuple[float, float]]:
+        """Amplitude (m/s2) and frequency (Hz) of all points within the stroke."""
+        return [(sweep.amplitude, frequency) for sweep in sweeps(self.settings) for frequency in sweep.frequencies]
+
+    @property
+    def scalars(self) -> list[str]:
+        """Columns of the numbers that sum an FRF up."""
+        names = []
+        for amplitude in dict.fromkeys(amplitude for amplitude, _ in self.points):
+            names += [f"resonance {short(amplitude)} m/s2 [Hz]", f"peak {short(amplitude)} m/s2 [m/N]"]
+        return names
+
+    @property
+    def columns(self) -> list[str]:
+        parts = [column(part, *point) for point in sorted(self.points) for part in ("H_re", "H_im")]
+        return [*self.scalars, NOT_SETTLED_COLUMN, *parts]
+
+    def described(self) -> dict[str, str]:
+        """Settings as text, by key."""
+        s = self.settings
+        return {
+            "frf H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
+            "frf amplitudes": " ".join(map(short, s.amplitudes)) + " m/s2",
+            "frf frequencies": " ".join(map(short, s.frequencies)) + " Hz",
+            "frf direction": s.direction,
+            "frf tolerance": repr(s.tolerance),
+            "frf periods": f"{s.min_periods} to {s.max_periods}",
+            "frf stroke": f"{s.stroke!r} m",
+            "frf resonance band": f"{short(self.band[0])} to {short(self.band[1])} Hz",
+        }
+
+    def measure(self, instance: Instance, parameters: Mapping[str, Value]) -> tuple[dict[str, float], list[str]]:
+        """Values by column, and a line for each point that could not be solved."""
+        bench = FmuBench(instance, parameters)
+        found, problems, unsettled = {}, [], 0
+        for sweep in sweeps(self.settings):
+            for point, _ in run_sweep(bench, sweep, self.settings, threading.Event()):
+                found[point.amplitude, point.frequency] = point.H
+                unsettled += point.status == NOT_SETTLED
+                if point.status.startswith(FAILED):
+                    problems.append(f"{point.amplitude:g} m/s2, {point.frequency:g} Hz: {point.status}")
+        values: dict[str, float] = {NOT_SETTLED_COLUMN: unsettled}
+        for (amplitude, frequency), H in found.items():
+            values[column("H_re", amplitude, frequency)] = H.real
+            values[column("H_im", amplitude, frequency)] = H.imag
+        for amplitude in {amplitude for amplitude, _ in found}:
+            values.update(self._resonance(amplitude, found))
+        return values, problems
+
+    def _resonance(self, amplitude: float, found: Mapping[tuple[float, float], complex]) -> dict[str, float]:
+        low, high = self.band
+        curve = sorted((f, H) for (a, f), H in found.items() if a == amplitude and low <= f <= high and not np.isnan(H))
+        maxima = extremes(*map(np.array, zip(*curve)))[0] if len(curve) > 2 else []
+        frequency, peak = max(maxima, key=lambda extreme: extreme[1], default=(math.nan, math.nan))
+        return {f"resonance {short(amplitude)} m/s2 [Hz]": frequency, f"peak {short(amplitude)} m/s2 [m/N]": peak}
+
+
+@dataclass(frozen=True)
+class StaticQuantity:
+    """Static test of the head suspension, see studies/static/loops.py.
+
+    stiffness   secant from peak to peak
+    loss        energy that one loop dissipates
+    """
+
+    amplitudes: tuple[float, ...]  # m, ascending
+    rate: float = 1e-3  # m/s
+
+    @property
+    def scalars(self) -> list[str]:
+        """Columns of stiffness and loss."""
+        return [
+            f"static {name} {short(amplitude)} m [{unit}]"
+            for amplitude in self.amplitudes
+            for name, unit in (("stiffness", "N/m"), ("loss", "J"))
+        ]
+
+    @property
+    def columns(self) -> list[str]:
+        return self.scalars
+
+    def described(self) -> dict[str, str]:
+        """Settings as text, by key."""
+        return {
+            "static amplitudes": " ".join(map(short, self.amplitudes)) + " m",
+            "static rate": f"{short(self.rate)} m/s",
+        }
+
+    def measure(self, instance: Instance, parameters: Mapping[str, Value]) -> tuple[dict[str, float], list[str]]:
+        """Values by column; FmuError if a step cannot be solved."""
+        friction = instance.variables["friction"]
+        law = text(friction, parameters.get("friction", parse(friction, friction.start)))
+        values: list[float] = []
+        for amplitude in self.amplitudes:
+            loop = measure_loop(instance, parameters, law, self.rate, amplitude)
+            values += [loop.stiffness, loop.dissipated]
+        return dict(zip(self.scalars, values)), []
+
+
+Quantity = FrfQuantity | StaticQuantity
+
+
+def column(part: str, amplitude: float, frequency: float) -> str:
+    """Name of the column of "H_re" or "H_im" at an amplitude (m/s2) and a frequency (Hz)."""
+    return f"{part} {short(amplitude)} m/s2 {short(frequency)} Hz [m/N]"
+
+
+def short(number: float) -> str:
+    """Shortest exact text."""
+    return repr(float(number)).removesuffix(".0")

@@ -1,0 +1,148 @@
+"""What a study says: envelope of the receptance, spread and Sobol indices of the scalar results."""
+
+from __future__ import annotations
+
+import csv
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..tables import write_head
+from .design import unit_problem
+from .evaluations import FrfQuantity, column
+from .record import STATUS
+from .settings import StudySettings
+from .workers import OK
+
+PERCENTILES = (0, 5, 50, 95, 100)
+
+Rows = Mapping[int, Mapping[str, str]]
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """Of |H| over all cases, at one amplitude."""
+
+    amplitude: float  # m/s2
+    frequency: np.ndarray  # (n,) in Hz
+    percentiles: np.ndarray  # (len(PERCENTILES), n) in m/N; NaN where no case has a value
+
+
+@dataclass(frozen=True)
+class SobolIndices:
+    """Sobol indices of one scalar result, with the half width of their 95 % confidence intervals."""
+
+    column: str
+    first: np.ndarray  # (parameters,) first order
+    first_confidence: np.ndarray
+    total: np.ndarray
+    total_confidence: np.ndarray
+
+
+def values(rows: Rows, name: str) -> np.ndarray:
+    """A column as numbers, in the order of the cases; NaN where it is empty. Shape (rows,)."""
+    return np.array([float(rows[number][name] or "nan") for number in sorted(rows)])
+
+
+def envelopes(quantity: FrfQuantity, rows: Rows) -> list[Envelope]:
+    """One envelope for each amplitude."""
+    found = []
+    for amplitude in dict.fromkeys(amplitude for amplitude, _ in quantity.points):
+        frequency = np.array(sorted(f for a, f in quantity.points if a == amplitude))
+        magnitude = np.array(
+            [np.hypot(*(values(rows, column(part, amplitude, f)) for part in ("H_re", "H_im"))) for f in frequency]
+        )
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
+            percentiles = np.nanpercentile(magnitude, PERCENTILES, axis=1)
+        found.append(Envelope(amplitude, frequency, percentiles))
+    return found
+
+
+def spread_table(scalars: Sequence[str], rows: Rows) -> list[str]:
+    """Lines with smallest, median and largest value of each scalar result, and how many cases have one."""
+    width = max(map(len, scalars))
+    lines = [f"{'':{width}s}  {'min':>10s} {'median':>10s} {'max':>10s}   cases"]
+    for name in scalars:
+        numbers = values(rows, name)
+        numbers = numbers[np.isfinite(numbers)]
+        if numbers.size:
+            cells = " ".join(f"{number:10.5g}" for number in np.percentile(numbers, (0, 50, 100)))
+            lines.append(f"{name:{width}s}  {cells} {numbers.size:7d}")
+        else:
+            lines.append(f"{name:{width}s}  no case has a value")
+    return lines
+
+
+def sobol_indices(settings: StudySettings, scalars: Sequence[str], rows: Rows) -> list[SobolIndices]:
+    """Indices of each scalar result that varies (Saltelli et al. 2010, by SALib).
+
+    The estimators need all cases of a block, so a block with a case without value is left out.
+    """
+    from SALib.analyze import sobol  # slow to load
+
+    names, found = list(settings.vary), []
+    for name in scalars:
+        blocks = values(rows, name).reshape(-1, len(names) + 2)
+        blocks = blocks[np.isfinite(blocks).all(axis=1)]
+        if len(blocks) < 2 or np.ptp(blocks) == 0:
+            continue
+        indices = sobol.analyze(unit_problem(names), blocks.ravel(), calc_second_order=False, seed=settings.seed)
+        found.append(SobolIndices(name, *(indices[key] for key in ("S1", "S1_conf", "ST", "ST_conf"))))
+    return found
+
+
+def incomplete_blocks(settings: StudySettings, rows: Rows) -> int:
+    """Blocks of a Sobol design with a case that is not whole."""
+    whole = np.array([rows[number][STATUS] == OK for number in sorted(rows)])
+    return int((~whole.reshape(-1, len(settings.vary) + 2).all(axis=1)).sum())
+
+
+def sobol_table(settings: StudySettings, found: Sequence[SobolIndices]) -> list[str]:
+    """Lines with first and total order index by result and parameter."""
+    names = list(settings.vary)
+    width = max(len("first / total order"), *(len(indices.column) for indices in found))
+    widths = [max(13, len(name)) for name in names]
+    lines = ["  ".join([f"{'first / total order':{width}s}", *(f"{n:>{w}s}" for n, w in zip(names, widths))])]
+    for indices in found:
+        cells = (
+            f"{f'{first:.2f} / {total:.2f}':>{w}s}" for first, total, w in zip(indices.first, indices.total, widths)
+        )
+        lines.append("  ".join([f"{indices.column:{width}s}", *cells]))
+    return lines
+
+
+def write_sobol(path: Path, head: Mapping[str, str], settings: StudySettings, found: Sequence[SobolIndices]) -> None:
+    """Indices and confidence intervals as CSV, one row for each result and parameter."""
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        write_head(
+            file,
+            {**head, "confidence": "half width of the 95 % interval"},
+            ["result", "parameter", "first order", "confidence", "total order", "confidence of total"],
+        )
+        writer = csv.writer(file, lineterminator="\n")
+        for indices in found:
+            numbers = zip(indices.first, indices.first_confidence, indices.total, indices.total_confidence)
+            for name, row in zip(settings.vary, numbers):
+                writer.writerow([indices.column, name, *(f"{number:.6g}" for number in row)])
+
+
+def write_parquet(
+    path: Path, head: Mapping[str, str], columns: Sequence[str], rows: Rows, texts: Sequence[str]
+) -> None:
+    """All rows as Parquet, the head as the schema's metadata; columns in `texts` stay text."""
+    import pyarrow
+    import pyarrow.parquet
+
+    ordered = [rows[number] for number in sorted(rows)]
+    arrays = {
+        name: [row[name] for row in ordered]
+        if name in texts
+        else pyarrow.array(values(rows, name), from_pandas=True)  # NaN is a missing value
+        for name in columns
+    }
+    table = pyarrow.table(arrays).replace_schema_metadata(dict(head))
+    pyarrow.parquet.write_table(table, path)

@@ -1,0 +1,213 @@
+"""The command `zspring en50318`, started as a user starts it."""
+
+from __future__ import annotations
+
+import re
+import signal
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from commands import head, start, table, zspring
+from zspring.parameter_sets import LINES, packaged_sets
+
+EDITION = """
+edition = "Slow and fast"
+source = "a test"
+"""
+CASE = """
+[[case]]
+title = "{speed}"
+line = "short.ssv"
+pantograph = "dsa-380"
+speed = {speed}
+first_span = 2
+last_span = 3
+static_force = 100
+[case.ranges]
+mean_force = [95, 100]
+loss_of_contact = [0, 0]
+actual_minimum = [90, 99]
+"""
+
+
+def line_with(folder: Path, name: str, parameter: str, value: str) -> None:
+    """The line of 2002 as a file of that name, one parameter changed."""
+    source = packaged_sets(LINES)["en-50318-2002"].read_text(encoding="utf-8")
+    pattern = rf'(name="{re.escape(parameter)}".*?value=")[^"]*'
+    changed, count = re.subn(pattern, rf"\g<1>{value}", source, count=1, flags=re.DOTALL)
+    assert count == 1
+    (folder / name).write_text(changed, encoding="utf-8")
+
+
+def edition(folder: Path, *speeds: int) -> Path:
+    """Cases at these speeds on a line of 4 spans."""
+    line_with(folder, "short.ssv", "line.spans", "4")
+    path = folder / "edition.toml"
+    path.write_text(EDITION + "".join(CASE.format(speed=speed) for speed in speeds), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory) -> tuple[Path, str]:
+    """Folder and output of the first reference case."""
+    folder = tmp_path_factory.mktemp("quick")
+    out, _ = zspring(folder, "en50318", "--quick", "--output", "out")
+    return folder / "out", out
+
+
+def figures(out: str) -> dict[str, str]:
+    """Printed figures by label."""
+    rows = [line.rsplit("  ", 1) for line in out.splitlines() if "  " in line]
+    return {label.strip(): value for label, value in rows}
+
+
+def test_the_first_case_alone_is_quick_and_whole(quick):
+    folder, out = quick
+    assert "all 8 figures are inside their accepted ranges" in out and "1 runs in" in out
+    names = {path.name for path in folder.iterdir()}
+    assert {"report.html", "runs.csv", "en-50318-2002-250-km-h.csv", "en-50318-2002-250-km-h.png"} <= names
+    assert any(line.startswith("# Catenary SHA-256: ") for line in head(folder / "runs.csv"))
+
+
+def test_a_second_start_takes_all_runs_from_the_folder(quick):
+    folder, _ = quick
+    out, _ = zspring(folder.parent, "en50318", "--quick", "--output", "out")
+    assert "all 1 runs are in" in out
+
+
+def test_the_series_of_our_run_gives_the_same_figures_as_a_users_file(quick, tmp_path):
+    folder, _ = quick
+    (row,) = table(folder / "runs.csv")
+    file = folder / "en-50318-2002-250-km-h.csv"
+    out, _ = zspring(tmp_path, "en50318", "--series", str(file), "--case", "250 km/h", "--output", "own")
+    found = figures(out)
+    assert found["standard deviation, 0-20 Hz, N"] == f"{float(row['standard_deviation [N]']):.1f}"
+    assert found["largest uplift at a support, mm"] == f"{float(row['support_uplift [mm]']):.1f}"
+    assert "all 8 figures are inside" in out
+    assert (tmp_path / "own/report.html").stat().st_size > 50_000
+
+
+def test_a_simulation_is_compared_with_a_line_test(quick, tmp_path):
+    """A copy of the run 1.5 times as far from its mean: the deviation is a third too small."""
+    folder, _ = quick
+    run = table(folder / "en-50318-2002-250-km-h.csv")
+    columns = ["time [s]", "position 1 [m]", "contact force 1 [N]"]
+    data = np.array([[float(row[name]) for name in columns] for row in run])
+    data[:, 2] = 118 + 1.5 * (data[:, 2] - 118)
+    np.savetxt(tmp_path / "test.csv", data, delimiter=",", header=",".join(columns), comments="", fmt="%.8g")
+    out, _ = zspring(
+        tmp_path,
+        "en50318",
+        "--series",
+        str(folder / "en-50318-2002-250-km-h.csv"),
+        "--line-test",
+        "test.csv",
+        "--spans",
+        "5:6",
+        "--output",
+        "own",
+    )
+    assert "1 of 1 figures are outside their accepted ranges" in out
+    assert "by -13.3 %" in out  # -33.3 % where 20 % are accepted
+
+
+def test_an_interrupted_validation_goes_on_with_what_is_missing(tmp_path):
+    path = edition(tmp_path, 200, 230, 260, 290)
+    arguments = ["en50318", "--edition", str(path), "--output", "out", "--jobs", "1"]
+    process = start(tmp_path, *arguments)
+    record = tmp_path / "out/runs.csv"
+    deadline = time.monotonic() + 100
+    while not (record.exists() and len(table(record)) >= 1):
+        assert process.poll() is None and time.monotonic() < deadline
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130 and "Traceback" not in err and "goes on from there" in err
+    kept = table(record)
+    assert 1 <= len(kept) < 4
+    out, _ = zspring(tmp_path, *arguments[:-2])
+    assert f"going on after {len(kept)} of 4" in out
+    finished = table(record)
+    assert [row["label"] for row in finished] == ["200", "230", "260", "290"]
+    assert finished[: len(kept)] == kept
+    assert "are outside their accepted ranges: " in out and "actual minimum at 290 by -" in out
+
+
+def test_finished_runs_are_kept_when_one_fails(tmp_path):
+    """The second case has a line that the FMU refuses when it starts."""
+    line_with(tmp_path, "slack.ssv", "contact_wire.tension", "-5")
+    path = edition(tmp_path, 250, 251)
+    text = path.read_text(encoding="utf-8")
+    second = text.index("[[case]]", text.index("[[case]]") + 1)
+    path.write_text(text[:second] + text[second:].replace("short.ssv", "slack.ssv"), encoding="utf-8")
+    _, err = zspring(tmp_path, "en50318", "--edition", str(path), "--jobs", "1", "--output", "out", status=1)
+    assert "251 km/h: " in err and "contact_wire.tension = -5 N" in err
+    assert "1 of 2 runs are kept in" in err
+    assert [row["label"] for row in table(tmp_path / "out/runs.csv")] == ["250"]
+
+
+def test_the_frf_of_the_example_is_compared_by_band(tmp_path):
+    zspring(tmp_path, "identify", "--example", "bench")
+    out, _ = zspring(
+        tmp_path,
+        "en50318",
+        "--frf",
+        "bench/bench.csv",
+        "--frf-bands",
+        "2,5,14",
+        "--output",
+        "frf",
+        "--set",
+        "zspring.k=12000",
+        "--set",
+        "zspring.l0=0.015",
+        "--set",
+        "zspring.Mf=0.35",
+    )
+    rows = [line for line in out.splitlines() if "m/s2" in line]
+    assert len(rows) == 6
+    for row in rows:  # its parameters are those that the data were made with; 2 % of noise are left
+        _, _, rms = re.findall(r"\S+(?= %)", row)
+        assert float(rms) < 4.0, row
+    names = {path.name for path in (tmp_path / "frf").iterdir()}
+    assert names == {"report.html", "frf-comparison.csv", "frf-comparison.png"}
+
+
+def test_the_empty_edition_is_written_once(tmp_path):
+    out, _ = zspring(tmp_path, "en50318", "--example", "mine")
+    assert out.strip() == f"written: {Path('mine/edition.toml')}"
+    _, err = zspring(tmp_path, "en50318", "--example", "mine", status=1)
+    assert "exists and is kept" in err
+    _, err = zspring(tmp_path, "en50318", "--edition", "mine/edition.toml", status=1)
+    assert "source is empty" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--series", "none.csv"], "none.csv: No such file"),
+        (["--series", "short.csv"], "too short for 20 Hz"),
+        (["--series", "long.csv", "--spans", "5:6"], "the series has 0 to 100 m"),
+        (["--series", "long.csv", "--spans", "6:5"], "'6:5': must be N or FIRST:LAST"),
+        (["--series", "long.csv", "--case", "260 km/h"], "260 km/h: no case of EN 50318:2002; did you mean"),
+        (["--spans", "5:6"], "--spans is for --series"),
+        (["--parameters", "dsa-380"], "--parameters is for --frf"),
+        (["--edition", "line.toml"], "no such file, and no set of that name"),
+        (["--edition", "spans.toml"], "spans 2 to 4: must be in 2 .. 3"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line_and_nothing_is_written(arguments, message, tmp_path):
+    time_of = np.arange(2001) / 1000
+    data = np.column_stack([time_of, 50 * time_of, np.full(2001, 100.0)])
+    columns = "time [s],position [m],contact_force [N]"
+    np.savetxt(tmp_path / "long.csv", data, delimiter=",", header=columns, comments="")
+    np.savetxt(tmp_path / "short.csv", data[:100], delimiter=",", header=columns, comments="")
+    text = edition(tmp_path, 200).read_text(encoding="utf-8")
+    (tmp_path / "line.toml").write_text(text.replace("short.ssv", "mine.ssv"), encoding="utf-8")
+    (tmp_path / "spans.toml").write_text(text.replace("last_span = 3", "last_span = 4"), encoding="utf-8")
+    _, err = zspring(tmp_path, "en50318", *arguments, "--output", "out", status=1)
+    assert message in err and len(err.strip().splitlines()) == 1
+    assert not (tmp_path / "out").exists()

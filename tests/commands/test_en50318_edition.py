@@ -1,0 +1,138 @@
+"""Editions of the standard: what their files say, how they are checked, and how figures are judged."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from pathlib import Path
+
+import pytest
+
+from zspring.en50318.edition import Judgement, agreement, judge, packaged_edition, read_edition
+from zspring.errors import ZSpringError
+from zspring.line.statistics import FIGURES
+
+GOOD = """
+edition = "X"
+source = "a book"
+[[case]]
+title = "fast"
+line = "en-50318-2002"
+pantograph = "dsa-380"
+speed = 300
+first_span = 5
+last_span = 6
+static_force = 120
+[case.ranges]
+mean_force = [110, 120]
+[agreement]
+standard_deviation = 20
+"""
+
+
+def edition(folder: Path, text: str):
+    path = folder / "x.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_edition(path)
+
+
+def test_the_edition_of_2002_has_16_ranges_and_says_that_they_are_second_hand():
+    found = read_edition(packaged_edition("en-50318-2002"))
+    assert [case.speed for case in found.cases] == [250, 300]
+    assert sum(len(case.ranges) for case in found.cases) == 16
+    assert "second-hand" in found.source and "unverified" in found.source
+    assert found.cases[0].ranges["standard_deviation"] == (26, 31)
+    assert found.cases[1].ranges["support_uplift"] == (55, 65)
+
+
+def test_the_benchmark_takes_its_mean_force_from_the_law_for_ac_lines():
+    found = read_edition(packaged_edition("benchmark-2015"))
+    for case in found.cases:
+        assert case.static_force == pytest.approx(0.00097 * case.speed**2 + 70)
+        assert not case.ranges
+
+
+def test_the_example_is_refused_until_its_source_is_told_and_then_reads(tmp_path):
+    path = tmp_path / "edition.toml"
+    shutil.copy(packaged_edition("example"), path)
+    with pytest.raises(ZSpringError, match="source is empty: say where the numbers are from"):
+        read_edition(path)
+    text = path.read_text(encoding="utf-8").replace('source = "" ', 'source = "EN 50318:2018, table 9" ')
+    text = text.replace("# mean_force = [ , ]", "mean_force = [100, 110]")
+    path.write_text(text, encoding="utf-8")
+    (case,) = read_edition(path).cases
+    assert case.ranges == {"mean_force": (100, 110)}
+    assert case.line == str(tmp_path / "ac-simple.ssv")
+
+
+def test_every_figure_can_have_a_range_and_the_example_names_them(tmp_path):
+    ranges = "\n".join(f"{name} = [0, 1]" for name in FIGURES)
+    found = edition(tmp_path, GOOD.replace("mean_force = [110, 120]", ranges))
+    assert set(found.cases[0].ranges) == set(FIGURES)
+    text = packaged_edition("example").read_text(encoding="utf-8")
+    for name in FIGURES:
+        assert name in text or name in ("losses", "longest_loss")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('edition = "X"', "", "edition is missing"),
+        ('source = "a book"', 'source = " "', "source is empty"),
+        ("mean_force = [110, 120]", "mean_force = [120, 110]", r"case 1: ranges.mean_force = \[120, 110\]:"),
+        ("mean_force = [110, 120]", "mean_force = 110", r"ranges.mean_force = 110: must be \[lowest, highest\]"),
+        ("mean_force = [110, 120]", "mean_force = [nan, 1]", "must be .lowest, highest."),
+        ("mean_force =", "mean_farce =", "unknown figure 'mean_farce'; did you mean mean_force"),
+        ("standard_deviation = 20", "standard_deviation = -20", "agreement: standard_deviation = -20: must be"),
+        ("standard_deviation = 20", "sigma = 20", "agreement: unknown figure 'sigma'"),
+        ("speed = 300", 'speed = "300"', "case 1: speed = '300': must be a number"),
+        ("speed = 300", "speed = 3000", "speed = 3000 km/h: must be at most 600"),
+        ("speed = 300", "speeed = 300", "case 1: speed is missing"),
+        ("last_span = 6", "last_span = 4", "last_span = 4: must be a whole number of at least 5"),
+        ("first_span = 5", "first_span = 0", "first_span = 0: must be a whole number of at least 1"),
+        ("static_force = 120", "", "case 1: static_force is missing"),
+        ("static_force = 120", 'supply = "AD"', "supply = 'AD': must be one of AC"),
+        ("static_force = 120", 'static_force = 120\nsupply = "AC"', "static_force and supply: give one"),
+        ("static_force = 120", "static_force = 120\nuplift = 3", "case 1: unknown key 'uplift'"),
+        ("[[case]]", "[case]", "case"),
+        ("[agreement]", "[agrement]", "unknown key 'agrement'; did you mean agreement"),
+        ("speed = 300", "speed = ", "no TOML"),
+    ],
+)
+def test_bad_files_are_refused_in_one_line(old, new, message, tmp_path):
+    assert old in GOOD
+    with pytest.raises(ZSpringError, match=message) as refusal:
+        edition(tmp_path, GOOD.replace(old, new))
+    assert str(refusal.value).startswith(str(tmp_path / "x.toml"))
+    assert "\n" not in str(refusal.value)
+
+
+def test_two_cases_of_one_title_and_a_file_without_cases_are_refused(tmp_path):
+    case = GOOD[GOOD.index("[[case]]") : GOOD.index("[agreement]")]
+    with pytest.raises(ZSpringError, match="two cases 'fast'"):
+        edition(tmp_path, GOOD.replace("[agreement]", f"{case}[agreement]"))
+    with pytest.raises(ZSpringError, match="at least one"):
+        edition(tmp_path, GOOD.replace(case, ""))
+
+
+@pytest.mark.parametrize(
+    ("value", "outside"), [(110, 0), (115, 0), (120, 0), (109.5, -0.5), (122, 2), (math.nan, math.nan)]
+)
+def test_a_figure_is_inside_or_tells_how_far_outside(value, outside):
+    (found,) = judge({"mean_force": value}, {"mean_force": (110, 120)})
+    assert found.outside == pytest.approx(outside, nan_ok=True)
+    assert found.is_inside == (outside == 0)
+
+
+def test_agreement_is_relative_to_the_line_test():
+    limits = {"standard_deviation": 20.0, "support_uplift": 20.0}
+    simulated = {"standard_deviation": 24.0, "support_uplift": 39.0}
+    measured = {"standard_deviation": 20.0, "support_uplift": 50.0}
+    inside, outside = agreement(simulated, measured, limits)
+    assert inside == Judgement("standard_deviation", pytest.approx(20), (-20, 20))
+    assert outside.value == pytest.approx(-22) and outside.outside == pytest.approx(-2)
+
+
+def test_an_unknown_case_tells_which_there_are(tmp_path):
+    with pytest.raises(ZSpringError, match=r"slow: no case of X \(there are fast\)"):
+        edition(tmp_path, GOOD).case("slow")

@@ -1,0 +1,290 @@
+"""What `zspring identify` reads, measured responses, static tests and settings, and what it refuses."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyuff
+
+from linear import PUBLISHED, LinearPantograph
+from zspring.bench.measured import Source, in_band, read_curves, sign_warning
+from zspring.bench.static_test import read_static_test
+from zspring.errors import ZSpringError
+from zspring.fmu import Fmu
+from zspring.identify.settings import read_settings
+
+TABLE = dict(PUBLISHED["DSA-250"])
+LINEAR = LinearPantograph(head=TABLE.pop("k1"), **TABLE)
+FREQUENCY = np.array([1.0, 2.5, 5.0, 12.0])
+OMEGA = 2 * np.pi * FREQUENCY
+H = np.array([LINEAR.receptance(f) for f in FREQUENCY])
+
+KINDS = {
+    "m/N": H,
+    "mm/N": 1e3 * H,
+    "N/mm": 1e-3 / H,
+    "(m/s)/N": 1j * OMEGA * H,
+    "N/(m/s)": 1 / (1j * OMEGA * H),
+    "(m/s2)/N": -(OMEGA**2) * H,
+    "1/kg": -(OMEGA**2) * H,
+    "kg": -1 / (OMEGA**2 * H),
+}
+
+
+def write(path: Path, columns: str, *values: np.ndarray) -> Path:
+    rows = [",".join(map(repr, map(float, row))) for row in zip(*values)]
+    path.write_text("\n".join(["# from a bench", columns, *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("unit", KINDS)
+def test_every_kind_of_response_gives_the_same_receptance(tmp_path, unit):
+    value, steps = KINDS[unit], np.full(FREQUENCY.shape, 0.5)
+    cartesian = write(
+        tmp_path / "a.csv",
+        f"amplitude [m/s2],imaginary [{unit}],frequency [Hz],real [{unit}]",
+        steps,
+        value.imag,
+        FREQUENCY,
+        value.real,
+    )
+    polar = write(
+        tmp_path / "b.csv",
+        f"frequency [Hz],coherence,magnitude [{unit}],phase [deg]",
+        FREQUENCY,
+        np.ones(4),
+        np.abs(value),
+        np.degrees(np.angle(value)),
+    )
+    for source in (Source(cartesian), Source(polar, amplitude=0.5)):
+        (curve,) = read_curves(source)
+        np.testing.assert_allclose(curve.H, H, rtol=1e-12)
+        np.testing.assert_allclose(curve.acceleration, 0.5)
+        assert curve.label == "0.5 m/s2"
+
+
+def test_amplitudes_become_curves_and_displacements_become_accelerations(tmp_path):
+    path = write(
+        tmp_path / "a.csv",
+        "frequency [Hz],amplitude [mm],real [m/N],imaginary [m/N]",
+        np.tile(FREQUENCY, 2),
+        np.repeat([2.0, 5.0], 4),
+        np.tile(H.real, 2),
+        np.tile(H.imag, 2),
+    )
+    small, large = read_curves(Source(path))
+    np.testing.assert_allclose(small.acceleration, 2e-3 * OMEGA**2)
+    np.testing.assert_allclose(large.acceleration, 5e-3 * OMEGA**2)
+    assert (small.label, large.label) == ("2 mm", "5 mm")
+    (kept, _) = in_band([small, large], (2.0, 6.0))
+    np.testing.assert_array_equal(kept.frequency, [2.5, 5.0])
+    with pytest.raises(ZSpringError, match="band 6 to 7 Hz: no data with 2 mm"):
+        in_band([small], (6.0, 7.0))
+
+
+def test_a_contact_force_turns_the_sign_and_a_wrong_one_is_noticed(tmp_path):
+    path = write(tmp_path / "a.csv", "frequency [Hz],real [m/N],imaginary [m/N]", FREQUENCY, -H.real, -H.imag)
+    (wrong,) = read_curves(Source(path, amplitude=1.0))
+    (right,) = read_curves(Source(path, amplitude=1.0, force="contact"))
+    np.testing.assert_allclose(right.H, H, rtol=1e-12)
+    assert "contact" in sign_warning([wrong])
+    assert sign_warning([right]) is None
+
+
+def test_the_fixture_behind_the_load_cell_is_taken_off(tmp_path):
+    """The load cell sees a pantograph whose head is heavier by the fixture."""
+    heavier = dataclasses.replace(LINEAR, m1=LINEAR.m1 + 1.3)
+    seen = np.array([heavier.receptance(f) for f in FREQUENCY])
+    path = write(tmp_path / "a.csv", "frequency [Hz],real [m/N],imaginary [m/N]", FREQUENCY, seen.real, seen.imag)
+    (curve,) = read_curves(Source(path, amplitude=1.0, fixture_mass=1.3))
+    np.testing.assert_allclose(curve.H, H, rtol=1e-10)
+
+
+def universal_file(path: Path, value: np.ndarray, **fields) -> Path:
+    defaults = {
+        "func_type": 4,
+        "rsp_node": 1,
+        "rsp_dir": 3,
+        "ref_node": 1,
+        "ref_dir": 3,
+        "binary": 0,
+        "ord_data_type": 6,
+        "abscissa_spacing": 0,
+        "abscissa_spec_data_type": 18,
+        "abscissa_axis_units_lab": "Hz",
+        "ordinate_spec_data_type": 8,
+        "ordinate_axis_units_lab": "m",
+        "orddenom_spec_data_type": 13,
+        "orddenom_axis_units_lab": "N",
+        "z_axis_spec_data_type": 12,
+        "z_axis_value": 0.5,
+    }
+    dataset = pyuff.prepare_58(x=FREQUENCY, data=value, **{**defaults, **fields})
+    dataset["type"] = 58
+    pyuff.UFF(str(path)).write_sets([dataset], mode="overwrite")
+    return path
+
+
+UNITS = ("ordinate_spec_data_type", "ordinate_axis_units_lab", "orddenom_spec_data_type", "orddenom_axis_units_lab")
+
+
+@pytest.mark.parametrize(
+    "value, fields",
+    [
+        (H, {}),
+        (-H, {"rsp_dir": -3}),
+        (1e3 * H, {"ordinate_axis_units_lab": "mm"}),
+        (-(OMEGA**2) * H / 9.80665, {"ordinate_spec_data_type": 12, "ordinate_axis_units_lab": "g"}),
+        (1e-3 / (1j * OMEGA * H), dict(zip(UNITS, (13, "kN", 11, "m/s")))),
+    ],
+)
+def test_universal_files_give_the_same_receptance(tmp_path, value, fields):
+    path = universal_file(tmp_path / "a.uff", value, **fields)
+    (curve,) = read_curves(Source(path))
+    np.testing.assert_allclose(curve.H, H, rtol=1e-6)  # the file has seven digits of some numbers
+    np.testing.assert_allclose(curve.acceleration, 0.5)
+
+
+def test_a_universal_file_without_labels_uses_its_data_set_of_units(tmp_path):
+    """Data set 164 has factors from SI to the units of the file: mm and kN."""
+    path = universal_file(tmp_path / "a.uff", 1e6 * H, ordinate_axis_units_lab="", orddenom_axis_units_lab="")
+    text = path.read_text()
+    units = pyuff.prepare_164(
+        units_code=9,
+        units_description="mm, kN",
+        temp_mode=2,
+        length=1e3,
+        force=1e-3,
+        temp=1.0,
+        temp_offset=0.0,
+        return_full_dict=True,
+    )
+    pyuff.UFF(str(path)).write_sets([units], mode="overwrite")
+    path.write_text(path.read_text() + text)
+    (curve,) = read_curves(Source(path))
+    np.testing.assert_allclose(curve.H, H, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "fields, complaint",
+    [
+        ({"ordinate_axis_units_lab": "NONE"}, "data set 1: unit 'NONE': must be one of m, mm"),
+        ({"ordinate_spec_data_type": 5}, "data set 1: types 5 over 13: must be motion over force"),
+        ({"z_axis_value": 0.0}, "data set 1: no amplitude"),
+        ({"ref_dir": 1}, "no data set 58 with the frequency response of a driving point"),
+        ({"rsp_node": 2}, "no data set 58 with the frequency response of a driving point"),
+    ],
+)
+def test_unclear_universal_files_are_refused(tmp_path, fields, complaint):
+    path = universal_file(tmp_path / "a.uff", H, **fields)
+    with pytest.raises(ZSpringError, match=f"a.uff.*{complaint}"):
+        read_curves(Source(path))
+
+
+GOOD = "frequency [Hz],amplitude [m/s2],real [m/N],imaginary [m/N]\n1,0.5,1e-3,-1e-4\n2,0.5,2e-3,-1e-4\n"
+
+
+@pytest.mark.parametrize(
+    "text, complaint",
+    [
+        (GOOD.replace("real [m/N]", "real"), "column 'real' needs its unit"),
+        (GOOD.replace("m/N", "furlong"), r"column 'real': unit \[furlong\]: must be one of m/N"),
+        (GOOD.replace("imaginary [m/N]", "imaginary [mm/N]"), r"column 'imaginary': unit \[mm/N\]: must be m/N"),
+        (GOOD.replace("m/s2", "rpm"), r"column 'amplitude': unit \[rpm\]"),
+        (GOOD.replace("amplitude", "level"), "no column 'amplitude', and none given"),
+        (GOOD.replace("frequency", "f"), "no column 'frequency'"),
+        (GOOD.replace("imaginary", "im"), "no column 'imaginary'"),
+        (GOOD.replace("\n2,", "\n1,"), "line 3: frequency = 1 Hz after 1 Hz: must increase"),
+        (GOOD.replace("\n1,", "\n-1,"), "line 2: frequency = -1: must be positive"),
+        (GOOD.replace("2e-3", "nan"), "line 3: real = 'nan': must be a finite number"),
+        (GOOD.replace("2,0.5", "2,"), "line 3: amplitude = '': must be a finite number"),
+        (GOOD.replace("2e-3,-1e-4", "0,0"), "line 3: the response is 0"),
+        (GOOD + "3,0.5,1e-3\n", "line 4: 3 values for 4 columns"),
+        (GOOD.replace("real [m/N]", "frequency [Hz]"), "two columns 'frequency'"),
+        (GOOD.splitlines()[0] + "\n", "no row with a measured point"),
+    ],
+)
+def test_a_bad_measurement_is_refused_with_file_line_and_column(tmp_path, text, complaint):
+    path = tmp_path / "bad.csv"
+    path.write_text(text)
+    with pytest.raises(ZSpringError, match=f"bad.csv.*{complaint}") as error:
+        read_curves(Source(path))
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "text, complaint",
+    [
+        ("displacement [mm],force\n0,1\n1,2\n2,3\n", r"column 'force': unit \[\]: must be N or kN"),
+        ("displacement [mm]\n0\n1\n2\n", "no column 'force'"),
+        ("displacement [mm],force [N]\n0,1\n1,x\n2,3\n", "line 3: force = 'x': must be a finite number"),
+        ("displacement [mm],force [N],time [s]\n0,1,0\n1,2,1\n2,3,1\n", "line 4: time must increase"),
+    ],
+)
+def test_a_bad_static_test_is_refused_with_file_line_and_column(tmp_path, text, complaint):
+    path = tmp_path / "static.csv"
+    path.write_text(text)
+    with pytest.raises(ZSpringError, match=f"static.csv.*{complaint}"):
+        read_static_test(path, 0.005)
+
+
+SETTINGS = """
+model = "zspring"
+[[measurement]]
+file = "bench.csv"
+[free]
+zspring.k = { start = 15000, min = 5000, max = 40000 }
+[tied]
+zspring.J2 = { to = "zspring.J1", factor = 2 }
+[fixed]
+m1 = 7.5
+"""
+
+
+def test_settings_give_the_parameters_of_every_x(tmp_path):
+    path = tmp_path / "fit.toml"
+    path.write_text(SETTINGS)
+    with Fmu() as model:
+        settings = read_settings(path, model, "dsa-380-zspring", ("friction=Coulomb",))
+        inertia = float(model.variables["zspring.J1"].start)
+    for x, stiffness in ((0.0, 5000.0), (1.0, 40000.0), (0.2, 12000.0)):
+        values = settings.parameters([x])
+        assert values["zspring.k"] == pytest.approx(stiffness, rel=1e-15)
+        assert (values["m1"], values["friction"]) == (7.5, 2)
+        assert values["zspring.J2"] == 2 * inertia
+    (free,) = settings.free
+    assert free.value(free.x(free.start)) == pytest.approx(free.start, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "old, new, complaint",
+    [
+        ("zspring.k =", "zspring.q =", "no parameter 'zspring.q'"),
+        ("start = 15000", "start = 1", "free.zspring.k: start = 1 must lie in 5000 .. 40000"),
+        ("min = 5000", "min = 50000", "free.zspring.k: min = 50000 must be below max = 40000"),
+        ("min = 5000", "min = -1", "free.zspring.k: min = -1: the FMU allows min 0.001"),
+        ("min = 5000, ", "", "free.zspring.k: min is missing"),
+        ("max = 40000", 'max = "big"', "free.zspring.k: max = 'big': must be a number"),
+        ('"zspring"', '"spring"', 'model = \'spring\': must be "linear" or "zspring"'),
+        ('"zspring"', '"linear"', "free.zspring.k: the linear model has only m1"),
+        ("m1 = 7.5", "zspring.k = 7", "zspring.k is free, so it cannot be fixed, too"),
+        ("m1 = 7.5", "m9 = 7", "no parameter 'm9'"),
+        ("m1 = 7.5", "bench.frequency = 7", "the measurement itself sets"),
+        ("[fixed]", "[fixxed]", "unknown key 'fixxed'; did you mean fixed"),
+        ("[[measurement]]", "[[measurements]]", "measurement: needs at least one"),
+        ('file = "bench.csv"', 'file = "bench.csv"\nforce = "up"', "measurement 1: force = 'up'"),
+        ('model = "zspring"', 'model = "zspring"\nband = [5, 2]', "band = .*: must be .*frequency in Hz"),
+        ('model = "zspring"', 'model = "zspring"\nparameters = "none.ssv"', "none.ssv: no such file"),
+        ('to = "zspring.J1"', 'to = "friction"', "tied.zspring.J2: friction is no Real parameter"),
+        ("[free]", "[free", "no TOML"),
+    ],
+)
+def test_bad_settings_are_refused_with_file_and_key(tmp_path, old, new, complaint):
+    path = tmp_path / "fit.toml"
+    path.write_text(SETTINGS.replace(old, new, 1))
+    with Fmu() as model, pytest.raises(ZSpringError, match=f"fit.toml: .*{complaint}") as error:
+        read_settings(path, model)
+    assert "\n" not in str(error.value)

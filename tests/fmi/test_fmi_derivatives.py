@@ -1,0 +1,155 @@
+"""Output derivatives, and directional derivatives of a step, against differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from harness import PRECISE, Pantograph, Signal
+from models import each_case
+
+# Drive, its input, the size of the difference.
+DRIVES = {
+    "Force": ("contact_force", 1e-2),
+    "Displacement": ("head_displacement", 1e-6),
+    "Wire": ("wire_height", 1e-6),
+    "Bench": (None, 0.0),
+}
+REAL_OUTPUTS = [
+    "head.z",
+    "head.v",
+    "head.a",
+    "upper_frame.z",
+    "upper_frame.v",
+    "lower_frame.z",
+    "lower_frame.v",
+    "contact.force",
+    "zspring.alpha",
+    "zspring.beta",
+    "zspring.length",
+    "zspring.force",
+    "zspring.moment_alpha",
+    "zspring.moment_beta",
+    "energy.kinetic",
+    "energy.elastic",
+    "energy.dissipated",
+    "energy.work",
+]
+
+
+INPUTS = {
+    "Force": {"contact_force": Signal.cubed_sines([40.0], [1.2], 120.0)},
+    "Displacement": {"head_displacement": Signal.cubed_sines([0.01], [1.2])},
+    "Wire": {"wire_height": Signal.cubed_sines([0.003], [1.2])},
+    "Bench": {},
+}
+
+
+def in_motion(pantograph, parameters: dict) -> Pantograph:
+    """An instance that has been moved about for a while."""
+    p = pantograph(PRECISE | parameters)
+    inputs = INPUTS[parameters["drive"]]
+    p.run(0.005, 53, [], signals=inputs)
+    for name in inputs:
+        p.set_derivatives(name, 0.0, 0.0)
+    return p
+
+
+def differences(p: Pantograph, name: str, delta: float, size: float) -> np.ndarray:
+    """Central differences of REAL_OUTPUTS after a step, with respect to the input held in it."""
+    state, value = p.slave.getFMUstate(), p[name]
+    ends = []
+    for shifted in (value + delta, value - delta):
+        p.slave.setFMUstate(state)
+        p[name] = shifted
+        p.slave.doStep(p.time, size)
+        ends.append(p.reals(REAL_OUTPUTS))
+    p.slave.setFMUstate(state)
+    p.slave.freeFMUstate(state)
+    return (ends[0] - ends[1]) / (2 * delta)
+
+
+@pytest.mark.parametrize("size", [0.001, 0.002, 0.05])
+@pytest.mark.parametrize("friction", ["Regularized", "Coulomb", "Free", "Locked"])
+@pytest.mark.parametrize("drive", DRIVES)
+def test_directional_derivatives_of_a_step_are_its_differences(pantograph, drive, friction, size):
+    """Up to 25 internal steps in a step; for the drive's own input and for each uplift."""
+    dampers = {"c1": 10.0, "c2": 20.0, "contact.c": 50.0}
+    smooth = {"zspring.tau": 20.0, "bench.acceleration": 3.0}
+    p = in_motion(pantograph, dampers | smooth | {"drive": drive, "friction": friction})
+    own, delta = DRIVES[drive]
+    knowns = {own: delta} if own else {}
+    knowns |= {"uplift.head": 1e-2, "uplift.upper_frame": 1e-2, "uplift.lower_frame": 1e-2}
+    expected = {name: differences(p, name, delta, size) for name, delta in knowns.items()}
+    p.step(size)
+    unknowns = [p.reference(name) for name in REAL_OUTPUTS]
+    for name, columns in expected.items():
+        found = p.slave.getDirectionalDerivative(unknowns, [p.reference(name)], [1.0])
+        for output, f, e in zip(REAL_OUTPUTS, found, columns):
+            noise = 1e-6 * abs(p[output]) / knowns[name] * 1e-4
+            assert f == pytest.approx(e, rel=2e-3, abs=noise + 1e-12), f"d({output})/d({name})"
+
+
+@pytest.mark.parametrize("drive", ["Force", "Displacement", "Wire"])
+@pytest.mark.parametrize("suspension", ["Linear", "LinearLocked", "LinearFree"])
+def test_directional_derivatives_of_linear_suspensions_are_their_differences(pantograph, suspension, drive):
+    p = in_motion(pantograph, {"drive": drive, "suspension": suspension})
+    name, delta = DRIVES[drive]
+    expected = differences(p, name, delta, 0.02)
+    p.step(0.02)
+    outputs = ["head.z", "head.v", "contact.force", "lower_frame.z"]
+    found = p.slave.getDirectionalDerivative([p.reference(o) for o in outputs], [p.reference(name)], [1.0])
+    np.testing.assert_allclose(found, expected[[REAL_OUTPUTS.index(o) for o in outputs]], rtol=1e-5, atol=1e-9)
+
+
+def test_directional_derivatives_are_linear_in_the_direction(pantograph):
+    p = in_motion(pantograph, {"drive": "Wire"})
+    p.step(0.01)
+    unknowns = [p.reference(n) for n in ("head.z", "contact.force")]
+    knowns = [p.reference(n) for n in ("wire_height", "uplift.lower_frame")]
+    columns = np.array([p.slave.getDirectionalDerivative(unknowns, [k], [1.0]) for k in knowns]).T
+    np.testing.assert_allclose(p.slave.getDirectionalDerivative(unknowns, knowns, [0.3, -2.0]), columns @ [0.3, -2.0])
+
+
+def test_inputs_of_other_drives_have_no_influence(pantograph):
+    p = in_motion(pantograph, {"drive": "Force"})
+    p.step(0.01)
+    references = [p.reference(n) for n in ("wire_height", "head_displacement")]
+    assert p.slave.getDirectionalDerivative([p.reference("head.z")] * 1, references, [1.0, 1.0]) == [0.0]
+
+
+@each_case
+def test_asking_for_derivatives_changes_nothing(model, instance, case):
+    asked, left = instance(case.parameters), instance(case.parameters)
+    output, force = asked.reference(model.moved), asked.reference(model.force)
+    for _ in range(30):
+        for p in (asked, left):
+            p.run(0.01, 1, [], signals=case.inputs)
+        asked.slave.getDirectionalDerivative([output], [force], [1.0])
+        asked.slave.getRealOutputDerivatives([output], [1])
+    assert asked.all_values() == left.all_values()
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_output_derivatives_are_the_slopes_of_the_outputs(pantograph, drive):
+    """Against differences of a finely sampled smooth motion."""
+    size = 1e-4
+    smooth = {"zspring.tau": 3.0, "c1": 20.0, "contact.k": 5e3, "contact.c": 50.0, "bench.acceleration": 3.0}
+    p = pantograph(PRECISE | smooth | {"drive": drive, "solver.step": size})
+    p.run(size, 2600, [], signals=INPUTS[drive])
+    references = [p.reference(name) for name in REAL_OUTPUTS]
+    rows, slopes = [], []
+    for _ in range(200):
+        rows.append(p.run(size, 1, REAL_OUTPUTS, signals=INPUTS[drive])[0])
+        slopes.append(p.slave.getRealOutputDerivatives(references, [1] * len(references)))
+    rows, slopes = np.array(rows), np.array(slopes)
+    expected = (rows[2:] - rows[:-2]) / (2 * size)
+    for name, found, e in zip(REAL_OUTPUTS, slopes[1:-1].T, expected.T):
+        assert np.max(np.abs(found - e)) <= 0.02 * np.max(np.abs(e)) + 1e-9, name
+
+
+def test_the_slope_of_the_position_is_the_velocity(pantograph):
+    p = in_motion(pantograph, {"drive": "Force"})
+    p.step(0.01)
+    slopes = p.slave.getRealOutputDerivatives([p.reference(n) for n in ("head.z", "head.v", "lower_frame.z")], [1] * 3)
+    np.testing.assert_allclose(slopes, p.reals(["head.v", "head.a", "lower_frame.v"]), rtol=1e-12)

@@ -1,0 +1,59 @@
+"""The command `zspring`, started as a user starts it, and what it writes."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+PNG = b"\x89PNG\r\n"
+
+# A study of eight cases that takes a second.
+QUICK = """
+design = "grid"
+[vary]
+zspring.Mf = { from = 0.1, to = 0.4, count = 4 }
+zspring.k = [12500, 13500]
+[frf]
+amplitudes = [1, 4]
+frequencies = "3:8:0.5"
+"""
+
+
+def start(folder: Path, *arguments: str) -> subprocess.Popen:
+    return subprocess.Popen(
+        [sys.executable, "-m", "zspring", *arguments],
+        cwd=folder,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+
+
+def zspring(folder: Path, *arguments: str, status: int = 0) -> tuple[str, str]:
+    """Standard output and error of a run that ends with `status`."""
+    process = start(folder, *arguments)
+    out, err = process.communicate(timeout=120)
+    assert process.returncode == status, err
+    assert "Traceback" not in err
+    return out, err
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    with open(path, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def head(path: Path) -> list[str]:
+    return [line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
+
+
+def receptances(path: Path) -> dict[tuple[float, float], complex]:
+    return {
+        (float(row["amplitude [m/s2]"]), float(row["frequency [Hz]"])): complex(
+            float(row["H_re [m/N]"]), float(row["H_im [m/N]"])
+        )
+        for row in table(path)
+        if row["H_re [m/N]"]
+    }
