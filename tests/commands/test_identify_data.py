@@ -218,7 +218,7 @@ def test_a_bad_measurement_is_refused_with_file_line_and_column(tmp_path, text, 
 @pytest.mark.parametrize(
     "text, complaint",
     [
-        ("displacement [mm],force\n0,1\n1,2\n2,3\n", r"column 'force': unit \[\]: must be N or kN"),
+        ("displacement [mm],force\n0,1\n1,2\n2,3\n", r"column 'force' needs its unit, as in 'force \[N\]'"),
         ("displacement [mm]\n0\n1\n2\n", "no column 'force'"),
         ("displacement [mm],force [N]\n0,1\n1,x\n2,3\n", "line 3: force = 'x': must be a finite number"),
         ("displacement [mm],force [N],time [s]\n0,1,0\n1,2,1\n2,3,1\n", "line 4: time must increase"),
