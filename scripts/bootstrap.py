@@ -35,10 +35,9 @@ PROBES = PROBES_BUILD / "bin"
 BROWSER = ROOT / "tests" / "browser"
 ZIG = "python-zig c++"  # from the package ziglang, for systems without a C++ compiler
 
-PACKAGE_SOURCES = ["CMakeLists.txt", "LICENSE", "README.md", "modelDescription.xml", "pyproject.toml",
-                   "fmu_src", "resources", "scripts/zspring"]
-PROBE_SOURCES = ["CMakeLists.txt", "modelDescription.xml", "resources/catenary/modelDescription.xml", "fmu_src",
-                 "tests/native"]
+PACKAGE_SOURCES = ["CMakeLists.txt", "LICENSE", "README.md", "modelDescription.xml",
+                   "modelDescription.catenary.xml", "pyproject.toml", "fmu_src", "resources", "scripts/zspring"]
+PROBE_SOURCES = ["CMakeLists.txt", "modelDescription.xml", "modelDescription.catenary.xml", "fmu_src", "tests/native"]
 
 # Prints the requirements in pyproject.toml, one a line; runs in .venv, whose pip has tomli for Python 3.10.
 READ_REQUIREMENTS = """

@@ -19,7 +19,7 @@ from fmpy.validation import validate_fmu
 from harness import Fmu, Value, refusal
 from models import each_case
 
-SOURCES = {"ZSpringPantograph": "modelDescription.xml", "Catenary": "resources/catenary/modelDescription.xml"}
+SOURCES = {"ZSpringPantograph": "modelDescription.xml", "Catenary": "modelDescription.catenary.xml"}
 ROOT = Path(__file__).parent.parent
 
 

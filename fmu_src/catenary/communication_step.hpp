@@ -1,15 +1,11 @@
 // What the inputs do over one communication step: where the pantographs are, and how hard they press.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
+#include "common/time.hpp"
 #include "line.hpp"
 #include "path.hpp"
 
 namespace zspring::catenary {
-
-inline constexpr double rounding_of_time = 1e-6;  // of an internal step: hosts add up their communication points
 
 inline Loads loads_at(const Mesh& mesh, const Passage passage[pantographs]) {
   Loads l;
@@ -64,7 +60,7 @@ class CommunicationStep {
     return Path(begin_[i].speed, inputs_.pantograph[i].speed, length_).rate(length_);
   }
 
-  double internal_steps() const { return std::max(1.0, std::ceil(length_ / line_.p.step - rounding_of_time)); }
+  Count internal_steps() const { return zspring::internal_steps(length_, line_.p.step); }
   double length() const { return length_; }
 
  private:

@@ -8,57 +8,25 @@
 #include "instance.hpp"
 #include "serialization.hpp"
 
+using namespace zspring;
 using namespace zspring::fmi;
 
 namespace {
 
-// Where calls are allowed: the table of section 4.2.4.
-constexpr unsigned any_phase = Instantiated | Initialization | StepComplete | StepFailed | Terminated | Error;
-constexpr unsigned readable = any_phase & ~Instantiated;
-constexpr unsigned settable = Instantiated | Initialization | StepComplete | StepFailed;
-constexpr unsigned stepping = StepComplete | StepFailed;
-constexpr unsigned after_step = StepComplete | StepFailed | Terminated | Error;
-
-using State = std::vector<double>;
-
-const char* phase_name(Phase phase) {
-  switch (phase) {
-    case Instantiated:
-      return "before fmi2EnterInitializationMode";
-    case Initialization:
-      return "in Initialization Mode";
-    case StepComplete:
-      return "between steps";
-    case StepFailed:
-      return "after a discarded step";
-    case Terminated:
-      return "after fmi2Terminate";
-    case Error:
-      break;
-  }
-  return "after an internal error";
-}
+using State = zspring::Numbers;
 
 template <class Action>
 fmi2Status guarded(fmi2Component component, unsigned allowed, const char* function, Action&& action) {
   auto* instance = static_cast<Instance*>(component);
   if (!instance) return fmi2Error;
   const auto fail = [&](const char* reason) {
-    char text[640];
-    std::snprintf(text, sizeof text, "%s: %s", function, reason);
-    instance->log.write(fmi2Error, Category::logStatusError, text);
+    instance->log.write(fmi2Error, Category::logStatusError, text("%s: %s", function, reason));
     return fmi2Error;
   };
-  if (!(instance->phase & allowed)) {
-    char reason[120];
-    std::snprintf(reason, sizeof reason, "not allowed %s", phase_name(instance->phase));
-    return fail(reason);
-  }
+  if (!(instance->phase & allowed)) return fail(text("not allowed %s", phase_name(instance->phase)).chars);
   try {
     return action(*instance);
   } catch (const Refusal& e) {
-    return fail(e.what());
-  } catch (const zspring::ParameterError& e) {
     return fail(e.what());
   } catch (const std::exception& e) {
     instance->phase = Error;
@@ -70,7 +38,7 @@ fmi2Status guarded(fmi2Component component, unsigned allowed, const char* functi
 }
 
 void need(const void* pointer, size_t n, const char* name) {
-  if (n > 0 && !pointer) throw Refusal(std::string(name) + ": must not be NULL");
+  if (n > 0 && !pointer) refuse("%s: must not be NULL", name);
 }
 
 template <class Value>
@@ -100,7 +68,7 @@ fmi2Status set_values(fmi2Component c, const char* function, Type type, const fm
 
 fmi2Status no_strings(fmi2Component c, unsigned allowed, const char* function, size_t n) {
   return guarded(c, allowed, function, [&](Instance&) {
-    if (n > 0) throw Refusal("this FMU has no variables of type String");
+    if (n > 0) refuse("this FMU has no variables of type String");
     return fmi2OK;
   });
 }
@@ -109,7 +77,7 @@ fmi2Status no_strings(fmi2Component c, unsigned allowed, const char* function, s
 fmi2Status no_status(fmi2Component c, const char* function) {
   return guarded(c, after_step, function, [&](Instance& i) {
     i.log.write(fmi2Discard, Category::logStatusDiscard,
-                "this status is not available: steps are never asynchronous");
+                text("this status is not available: steps are never asynchronous"));
     return fmi2Discard;
   });
 }
@@ -124,7 +92,7 @@ const char* fmi2GetVersion(void) { return fmi2Version; }
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) {
   return guarded(c, any_phase, "fmi2SetDebugLogging", [&](Instance& i) {
     if (const char* unknown = i.log.enable(on != fmi2False, n, categories))
-      throw Refusal(std::string("category ") + unknown + ": is not a log category of this FMU");
+      refuse("category %s: is not a log category of this FMU", unknown);
     return fmi2OK;
   });
 }
@@ -135,14 +103,17 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   try {
     const bool named = name && *name;
     auto instance = std::make_unique<Instance>(*functions, named ? name : "(unnamed)", debug != fmi2False);
-    std::string wrong;
-    if (!named) wrong = "instanceName: must not be empty";
-    if (type != fmi2CoSimulation) wrong = "fmuType: this FMU is for co-simulation only";
+    const auto fail = [&](const Text& reason) {
+      instance->log.write(fmi2Error, Category::logStatusError, reason);
+      return nullptr;
+    };
     if (!guid || std::strcmp(guid, ZSPRING_GUID) != 0)
-      wrong = std::string("fmuGUID = ") + (guid ? guid : "NULL") +
-              ": must be " ZSPRING_GUID "; modelDescription.xml and library are not from the same FMU";
-    if (wrong.empty()) return instance.release();
-    instance->log.write(fmi2Error, Category::logStatusError, wrong.c_str());
+      return fail(
+          text("fmuGUID = %s: must be " ZSPRING_GUID "; modelDescription.xml and library are not from the same FMU",
+               guid ? guid : "NULL"));
+    if (type != fmi2CoSimulation) return fail(text("fmuType: this FMU is for co-simulation only"));
+    if (!named) return fail(text("instanceName: must not be empty"));
+    return instance.release();
   } catch (...) {
   }
   return nullptr;
@@ -252,7 +223,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
   return guarded(c, any_phase, "fmi2SerializeFMUstate", [&](Instance&) {
     need(state, 1, "FMUstate"), need(bytes, 1, "serializedState");
     const State& numbers = *static_cast<State*>(state);
-    if (size < serialized_size(numbers)) throw Refusal("size: is less than fmi2SerializedFMUstateSize told");
+    if (size < serialized_size(numbers)) refuse("size: is less than fmi2SerializedFMUstateSize told");
     serialize(numbers, bytes);
     return fmi2OK;
   });

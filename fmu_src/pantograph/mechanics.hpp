@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "friction.hpp"
+#include "resolvent.hpp"
 #include "parameters.hpp"
 #include "zspring.hpp"
 
@@ -17,7 +17,6 @@ namespace zspring {
 
 using Vector2 = Eigen::Matrix<double, 2, 1>;
 using Vector5 = Eigen::Matrix<double, 5, 1>;
-using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
 enum Dof { U1, ALPHA, BETA, U2, U3 };
 
@@ -37,14 +36,18 @@ inline Vector5 on_masses(const Eigen::Vector3d& f) {
 
 inline constexpr const char* dof_name[] = {"head", "rod alpha", "rod beta", "upper frame", "lower frame"};
 
+struct Springs {
+  Vector5 force;  // N and N m, of all springs less the preload
+  Matrix4 head_tangent;
+};
+
 class Mechanics {
  public:
-  // Throws ParameterError for parameters that make no solvable model.
+  // Throws Refusal for parameters that make no solvable model. Refers to `p`.
   explicit Mechanics(const Parameters& p);
 
-  // Force and tangent of all springs less the preload, at q. False where the spring has no direction.
-  bool springs(const Vector5& q, Vector5& force, Matrix4& head_tangent) const;
-
+  // None where the spring has no direction.
+  std::optional<Springs> springs(const Vector5& q) const;
   Vector5 spring_force_change(const Matrix4& head_tangent, const Vector5& dq) const;
 
   Vector5 damping_force(const Vector5& v) const;
@@ -55,7 +58,7 @@ class Mechanics {
 
   ZSpringGeometry spring(const Vector5& q) const;  // zeros with Suspension::Linear
 
-  Parameters parameters;
+  const Parameters& parameters;
   StaticStiffness stiffness;
   FrictionLaw law;
   Vector2 moment_bound;  // N m, scale of s = moment / bound; 1 where the law knows no bound
@@ -66,7 +69,7 @@ class Mechanics {
   double load;             // N, m1 gravity + static_force
 
  private:
-  bool head_response(const Vector5& q, ElementResponse& out) const;
+  std::optional<ElementResponse> head_response(const Vector5& q) const;
 
   StaticState static_;  // not used with Suspension::Linear
   Vector4 head_preload_ = Vector4::Zero();
