@@ -3,7 +3,6 @@
 
 #include "common/time.hpp"
 #include "line.hpp"
-#include "path.hpp"
 
 namespace zspring::catenary {
 
@@ -30,12 +29,12 @@ class CommunicationStep {
   Passage at(int i, double tau) const {
     const PantographInputs& u = inputs_.pantograph[i];
     const Passage& from = begin_[i];
-    const double force = Path(from.force, u.force, length_).at(tau);
+    const double force = u.force.from(from.force, length_).at(tau);
     if (line_.p.travel == Travel::Position) {
-      const Path x(from.position, u.position, length_);
-      return {x.at(tau), x.rate(tau), force};
+      const Signal x = u.position.from(from.position, length_);
+      return {x.at(tau), x.rate_at(tau), force};
     }
-    const Path speed(from.speed, u.speed, length_);
+    const Signal speed = u.speed.from(from.speed, length_);
     return {from.position + speed.integral(tau), speed.at(tau), force};
   }
 
@@ -57,7 +56,7 @@ class CommunicationStep {
   // m/s2, at the end.
   double speed_rate(int i) const {
     if (line_.p.travel == Travel::Position) return 0;
-    return Path(begin_[i].speed, inputs_.pantograph[i].speed, length_).rate(length_);
+    return inputs_.pantograph[i].speed.from(begin_[i].speed, length_).rate_at(length_);
   }
 
   Count internal_steps() const { return zspring::internal_steps(length_, line_.p.step); }

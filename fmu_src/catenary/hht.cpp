@@ -16,7 +16,8 @@ double rounded(double h) {
 SparseMatrix iteration_matrix(const Line& line, const HhtCoefficients& c) {
   const Parameters& p = line.p;
   return (1 + c.weight * c.gamma_h * p.damping_mass) * line.matrices.mass +
-         c.weight * c.gamma_h * p.damping_stiffness * line.matrices.wires + c.weight * c.beta_h2 * line.stiffness();
+         c.weight * c.gamma_h * p.damping_stiffness * line.matrices.wires +
+         c.weight * c.beta_h2 * line.stiffness();
 }
 
 }  // namespace

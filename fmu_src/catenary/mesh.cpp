@@ -17,7 +17,8 @@ void check_droppers(const Parameters& p) {
     const double low = last + least_distance, high = p.span - least_distance;
     if (x < low || x > high)
       refuse(
-          "dropper.position[%d] = %.10g m: must be at least %.10g m and at most %.10g m, after the dropper before it "
+          "dropper.position[%d] = %.10g m: must be at least %.10g m and at most %.10g m, after the dropper before "
+          "it "
           "and within line.span = %.10g m",
           i + 1, x, low, high, p.span);
     last = x;

@@ -5,8 +5,8 @@
 namespace zspring::catenary {
 namespace {
 
-// Of the contact wire at a place that moves: its height over the line's datum, its lift from the unloaded shape, the
-// rate of its height.
+// Of the contact wire at a place that moves: its height over the line's datum, its lift from the unloaded shape,
+// the rate of its height.
 Eigen::Vector4d heights(const View& x, const Place& at) { return at.of(x.s.u) + at.of(x.line.shape.height); }
 
 double height(const View& x, const Place& at) { return at.value.dot(heights(x, at)); }

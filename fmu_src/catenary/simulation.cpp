@@ -11,9 +11,10 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : lin
   for (int i = 0; i < pantographs; ++i) {
     const Passage& at = placed[i] = initial_passage(line_.p, i, inputs.pantograph[i]);
     if (at.force != 0 && !line_.mesh.contains(at.position))
-      refuse("pantograph[%d].%s = %.10g m: must be within the line, 0 to %.10g m, as pantograph[%d].force = %.10g N",
-             i + 1, line_.p.travel == Travel::Speed ? "start" : "position", at.position, facts_.length, i + 1,
-             at.force);
+      refuse(
+          "pantograph[%d].%s = %.10g m: must be within the line, 0 to %.10g m, as pantograph[%d].force = %.10g N",
+          i + 1, line_.p.travel == Travel::Speed ? "start" : "position", at.position, facts_.length, i + 1,
+          at.force);
   }
   std::optional<LineState> rest = hht_.at_rest(loads_at(line_.mesh, placed));
   if (!rest)
@@ -78,12 +79,6 @@ bool Simulation::is_possible() const {
   for (const LineState* s : {&state_, &before_})
     if (!(s->h >= 0 && (s->slack.array() >= 0).all())) return false;
   return length_ >= 0 && !too_long(length_, line_.p.step);
-}
-
-void Simulation::read(Reader& reader) {
-  visit_state(reader);
-  forget_outputs();
-  if (!is_possible() || !all_finite(outputs())) refuse(numbers_of_no_simulation);
 }
 
 Text Simulation::describe_run() const {

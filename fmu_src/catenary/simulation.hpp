@@ -24,7 +24,6 @@ class Simulation final : public Model<Parameters, Inputs> {
   std::optional<Text> describe_step() const override { return std::nullopt; }
 
   void write(Writer& writer) override { visit_state(writer); }
-  void read(Reader& reader) override;
 
   const LineFacts& calculated() const { return facts_; }
 
@@ -32,7 +31,8 @@ class Simulation final : public Model<Parameters, Inputs> {
   Outputs present_outputs() const override { return catenary::outputs({line_, state_}); }
   Outputs change(const LineState& d) const { return catenary::outputs_change({line_, state_}, d); }
   std::optional<Discard> leaves_line(const CommunicationStep& step) const;
-  bool is_possible() const;
+  void read(Reader& reader) override { visit_state(reader); }
+  bool is_possible() const override;
   template <class Visitor>
   void visit_state(Visitor& f) {
     visit(state_, f);

@@ -1,6 +1,5 @@
 #include "static_shape.hpp"
 
-
 #include "block_cholesky.hpp"
 #include "common/failure.hpp"
 
@@ -68,11 +67,11 @@ StaticShape static_shape(const Parameters& p, const Mesh& mesh, const Matrices& 
   }
   for (int j = 0; j < n; ++j) {
     if (!(shape.length[j] > 0))
-      refuse_dropper(
-          p, j, text("the dropper would be %.6g m long; line.encumbrance must be larger", shape.length[j]));
+      refuse_dropper(p, j,
+                     text("the dropper would be %.6g m long; line.encumbrance must be larger", shape.length[j]));
     if (!(shape.tension[j] >= 0))
-      refuse_dropper(
-          p, j, text("in the static state the dropper would have to push, with %.6g N", -shape.tension[j]));
+      refuse_dropper(p, j,
+                     text("in the static state the dropper would have to push, with %.6g N", -shape.tension[j]));
     shape.stiffness[j] = p.dropper.EA > 0 ? p.dropper.EA / shape.length[j] : p.dropper.stiffness;
   }
   return shape;

@@ -5,8 +5,8 @@
 //   beta = (1 - hht_alpha)^2 / 4,   gamma = 1/2 - hht_alpha
 //
 // `a` belongs to t + hht_alpha h, not to t: it is the integrator's memory, not an output. Where the length of the
-// step changes it is moved, along its slope, to where the next step expects it; without that, steps of varying size
-// are of first order. A sliver of a step says little of the slope and would have it magnified by the next.
+// step changes it is moved, along its slope, to where the next step expects it; without that, steps of varying
+// size are of first order. A sliver of a step says little of the slope and would have it magnified by the next.
 #pragma once
 
 namespace zspring {

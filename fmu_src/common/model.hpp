@@ -9,8 +9,6 @@
 
 namespace zspring {
 
-inline constexpr char numbers_of_no_simulation[] = "FMU state: holds numbers that no simulation leaves behind";
-
 // A simulation, communication step by communication step, from the initial state that its constructor makes of
 // (const Parameters&, const Inputs&); that throws Refusal for what makes no model. It keeps no copy of the
 // parameters: of those referred to, the tunable ones may change between steps.
@@ -33,12 +31,12 @@ class Model {
   void forget_outputs() { outputs_.reset(); }
   // d outputs / d time at the end of the last step.
   virtual Outputs output_rates() = 0;
-  // Variation of the outputs with that of the inputs' values held in the last step; before the first one, with that
-  // of the initial inputs.
+  // Variation of the outputs with that of the inputs' values held in the last step; before the first one, with
+  // that of the initial inputs.
   virtual Outputs outputs_change(const Inputs& direction) = 0;
 
-  // For the log: what does not fit together at the start; what the solver did in the whole simulation; what it did in
-  // the last step, where that is unusual.
+  // For the log: what does not fit together at the start; what the solver did in the whole simulation; what it did
+  // in the last step, where that is unusual.
   virtual std::optional<Text> describe_imbalance() const = 0;
   virtual Text describe_run() const = 0;
   virtual std::optional<Text> describe_step() const = 0;
@@ -46,11 +44,18 @@ class Model {
   // All of the state but the parameters.
   virtual void write(Writer& writer) = 0;
   // Throws Refusal where these numbers are those of no simulation.
-  virtual void read(Reader& reader) = 0;
+  void restore(Reader& reader) {
+    read(reader);
+    forget_outputs();
+    if (!is_possible() || !all_finite(outputs()))
+      refuse("FMU state: holds numbers that no simulation leaves behind");
+  }
 
  protected:
   ~Model() = default;
   virtual Outputs present_outputs() const = 0;
+  virtual void read(Reader& reader) = 0;
+  virtual bool is_possible() const = 0;  // whether what was read could be a simulation's
 
  private:
   std::optional<Outputs> outputs_;

@@ -7,8 +7,8 @@
 //   LINEAR(id, member)          the same, a member of the state: its change is that member of the variation
 //   DISCRETE(id, value)         whatever counts, averages or switches: it has no change
 //
-// written with x, the model's view of its state, x.s the state itself, d a variation of that, and i, the index in an
-// array. An output without a definition does not compile, nor does a continuous one without its change.
+// written with x, the model's view of its state, x.s the state itself, d a variation of that, and i, the index in
+// an array. An output without a definition does not compile, nor does a continuous one without its change.
 #pragma once
 
 #include <array>
@@ -70,18 +70,17 @@ inline bool all_finite(const Outputs& y) {
 
 }  // namespace zspring
 
-#define ZSPRING_OUTPUT(id, is_right, value_of_x, change_with_d)                                              \
-  template <class View>                                                                                       \
-  struct Output<Id::id, View> {                                                                               \
-    static_assert(causality_of(Id::id) == Causality::Output && is_right, #id ": see common/outputs.hpp");     \
-    static auto value([[maybe_unused]] const View& x, [[maybe_unused]] int i) { return value_of_x; }          \
-    template <class State>                                                                                    \
-    static double change([[maybe_unused]] const View& x, [[maybe_unused]] const State& d,                     \
-                         [[maybe_unused]] int i) {                                                            \
-      return change_with_d;                                                                                   \
-    }                                                                                                         \
+#define ZSPRING_OUTPUT(id, is_right, value_of_x, change_with_d)                                           \
+  template <class View>                                                                                   \
+  struct Output<Id::id, View> {                                                                           \
+    static_assert(causality_of(Id::id) == Causality::Output && is_right, #id ": see common/outputs.hpp"); \
+    static auto value([[maybe_unused]] const View& x, [[maybe_unused]] int i) { return value_of_x; }      \
+    template <class State>                                                                                \
+    static double change([[maybe_unused]] const View& x, [[maybe_unused]] const State& d,                 \
+                         [[maybe_unused]] int i) {                                                        \
+      return change_with_d;                                                                               \
+    }                                                                                                     \
   };
-#define OUTPUT(id, value_of_x, change_with_d) \
-  ZSPRING_OUTPUT(id, is_continuous(Id::id), value_of_x, change_with_d)
+#define OUTPUT(id, value_of_x, change_with_d) ZSPRING_OUTPUT(id, is_continuous(Id::id), value_of_x, change_with_d)
 #define LINEAR(id, member) OUTPUT(id, x.s.member, d.member)
 #define DISCRETE(id, value_of_x) ZSPRING_OUTPUT(id, !is_continuous(Id::id), value_of_x, 0)

@@ -12,6 +12,14 @@ struct Signal {
   bool has_curvature = false;
 
   double at(double tau) const { return value + tau * (rate + 0.5 * curvature * tau); }
+  double rate_at(double tau) const { return rate + tau * curvature; }
+  double integral(double tau) const { return tau * (value + tau * (rate / 2 + tau * curvature / 6)); }
+
+  // Over a step of `length` s, from where it was: without derivatives the value is a target, reached at the end in
+  // a straight line. Linear in `last` and the values, so that it also serves variations.
+  Signal from(double last, double length) const {
+    return has_derivatives ? *this : Signal{last, (value - last) / length};
+  }
 };
 
 template <class Visitor>

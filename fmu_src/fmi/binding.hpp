@@ -1,10 +1,10 @@
-// Ties each parameter, calculated parameter and input of a model description to the member of the model that it stands
-// for. A variable without a line in the model's bindings.hpp does not compile, nor does a line without a variable or of
-// another causality. Outputs have their definitions in the model, common/outputs.hpp.
+// Ties each parameter, calculated parameter and input of a model description to the member of the model that it
+// stands for. A variable without a line in the model's bindings.hpp does not compile, nor does a line without a
+// variable or of another causality. Outputs have their definitions in the model, common/outputs.hpp.
 //
 // The FMI layer is compiled once for each model, with the folder of the model's bindings.hpp and variables.inc on
-// the include path. In namespace zspring::fmi a model provides the types Parameters, Inputs (of Signals, with a visit),
-// Calculated, and Simulation, a Model of these (common/model.hpp).
+// the include path. In namespace zspring::fmi a model provides the types Parameters, Inputs (of Signals, with a
+// visit), Calculated, and Simulation, a Model of these (common/model.hpp).
 #pragma once
 
 #include <type_traits>
@@ -42,21 +42,22 @@ constexpr Binding bind() {
 
 }  // namespace zspring::fmi
 
-#define ZSPRING_BINDING(id, kind, ...)                                                          \
-  template <>                                                                                   \
-  constexpr Binding bind<Id::id>() {                                                            \
-    static_assert(causality_of(Id::id) == Causality::kind, #id ": is of another causality");    \
-    Binding b;                                                                                  \
-    __VA_ARGS__                                                                                 \
-    return b;                                                                                   \
+#define ZSPRING_BINDING(id, kind, ...)                                                       \
+  template <>                                                                                \
+  constexpr Binding bind<Id::id>() {                                                         \
+    static_assert(causality_of(Id::id) == Causality::kind, #id ": is of another causality"); \
+    Binding b;                                                                               \
+    __VA_ARGS__                                                                              \
+    return b;                                                                                \
   }
-#define PARAMETER(id, member)                                                                                \
-  ZSPRING_BINDING(                                                                                           \
-      id, Parameter,                                                                                         \
+#define PARAMETER(id, member)                                                                                  \
+  ZSPRING_BINDING(                                                                                             \
+      id, Parameter,                                                                                           \
       b.parameter = [](const Parameters& p, [[maybe_unused]] int i) { return static_cast<double>(p.member); }; \
       b.set_parameter = [](Parameters& p, [[maybe_unused]] int i, double x) { assign(p.member, x); };)
-#define CALCULATED(id, member)            \
-  ZSPRING_BINDING(id, CalculatedParameter, \
-                  b.calculated = [](const Calculated& c, [[maybe_unused]] int i) -> double { return c.member; };)
+#define CALCULATED(id, member) \
+  ZSPRING_BINDING(             \
+      id, CalculatedParameter, \
+      b.calculated = [](const Calculated& c, [[maybe_unused]] int i) -> double { return c.member; };)
 #define INPUT(id, member) \
   ZSPRING_BINDING(id, Input, b.input = [](Inputs& u, [[maybe_unused]] int i) -> Signal& { return u.member; };)

@@ -53,7 +53,7 @@ void Instance::restore(const Numbers& numbers) {
   forget_discard();
   // Hosts that iterate restore at every step: a model of the same parameters is kept, only its state is replaced.
   if (!has_simulation || !same_model) simulation_.reset();
-  if (has_simulation) simulation().read(read);
+  if (has_simulation) simulation().restore(read);
   if (read.in != read.end) refuse("FMU state: goes on after its last value");
 }
 

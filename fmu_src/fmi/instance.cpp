@@ -189,9 +189,9 @@ fmi2Status Instance::step(double from, double length) {
     phase = StepFailed;
     wants_to_end_ = discard->at_end || length == discarded_length_;
     discarded_length_ = length;
-    log.write(fmi2Discard, Category::logStatusDiscard,
-              text("t = %.10g s: %s. The state is that of %.10g s", from + discard->time, discard->reason.chars,
-                   time_));
+    log.write(
+        fmi2Discard, Category::logStatusDiscard,
+        text("t = %.10g s: %s. The state is that of %.10g s", from + discard->time, discard->reason.chars, time_));
     return fmi2Discard;
   }
   stepped_ = true;

@@ -38,9 +38,7 @@ Header header_of(const Numbers& numbers) {
 
 }  // namespace
 
-std::size_t serialized_size(const Numbers& numbers) {
-  return sizeof(Header) + numbers.size() * sizeof(double);
-}
+std::size_t serialized_size(const Numbers& numbers) { return sizeof(Header) + numbers.size() * sizeof(double); }
 
 void serialize(const Numbers& numbers, char* bytes) {
   const Header h = header_of(numbers);
@@ -61,8 +59,7 @@ Numbers deserialize(const char* bytes, std::size_t size) {
   Numbers numbers(h.count);
   std::memcpy(numbers.data(), bytes + sizeof h, numbers.size() * sizeof(double));
   const Header expected = header_of(numbers);
-  if (std::memcmp(&expected, &h, sizeof h) != 0)
-    refuse("serialized state: damaged, its checksum does not fit");
+  if (std::memcmp(&expected, &h, sizeof h) != 0) refuse("serialized state: damaged, its checksum does not fit");
   return numbers;
 }
 

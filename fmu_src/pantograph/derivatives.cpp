@@ -1,5 +1,5 @@
-// Derivatives of the outputs, with respect to time and to the inputs: the last communication step is done again, and
-// what is wanted taken from each internal step.
+// Derivatives of the outputs, with respect to time and to the inputs: the last communication step is done again,
+// and what is wanted taken from each internal step.
 #include "simulation.hpp"
 #include "step_derivative.hpp"
 
@@ -65,7 +65,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
   }
   double tau = 0;
   const auto differentiated = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0,
-                              const Boundary& b1, double h) {
+                                  const Boundary& b1, double h) {
     tau += h;
     move_memory(p.solver.hht_alpha, from.h, h, d.a_slope, d.a);
     const Boundary db1 = boundary_change(tau);

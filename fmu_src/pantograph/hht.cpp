@@ -7,9 +7,9 @@ namespace zspring {
 namespace {
 
 // Gauss elimination without pivoting, in place of Eigen's PartialPivLU, with which a step costs 9 to 12 % more
-// (measured in pairs of runs of the standard figure). It needs none: the matrix is that of a positive definite one with its
-// rod columns scaled by dw/dz >= 0 and ds/dz >= 0 added to their diagonal, so every pivot is positive. One that
-// is not tells that the step is too large for the stiffness met, and the caller halves it.
+// (measured in pairs of runs of the standard figure). It needs none: the matrix is that of a positive definite one
+// with its rod columns scaled by dw/dz >= 0 and ds/dz >= 0 added to their diagonal, so every pivot is positive.
+// One that is not tells that the step is too large for the stiffness met, and the caller halves it.
 bool eliminate(Matrix4& A, Vector4& x) {
   for (int k = 0; k < 4; ++k) {
     if (!(A(k, k) > 0)) return false;

@@ -50,8 +50,8 @@ class Hht {
  public:
   explicit Hht(const Mechanics& mechanics) : m_(mechanics) {}
 
-  // From `from`, its memory moved to steps of h s, under the boundary `b0` to `to` under `b1`. Where Newton does not
-  // converge `to` is without meaning; its statistics never have one.
+  // From `from`, its memory moved to steps of h s, under the boundary `b0` to `to` under `b1`. Where Newton does
+  // not converge `to` is without meaning; its statistics never have one.
   Convergence step(const MechanicalState& from, const Boundary& b0, const Boundary& b1, double h,
                    MechanicalState& to) const;
 

@@ -35,8 +35,7 @@ Mechanics::Mechanics(const Parameters& p) : parameters(p), law(friction_law(p)) 
   if (law == FrictionLaw::Coulomb && p.solver.tangent != Tangent::Resolvent)
     refuse("solver.tangent: with friction Coulomb only Resolvent is allowed, the law has no slope");
   if (!(p.m3 + p.c2 + p.c3 + p.k2 + p.k3 > 0))
-    refuse(
-        "m3 = 0 kg: must be more than 0 where c2, c3, k2 and k3 are all 0, nothing holds the lower frame");
+    refuse("m3 = 0 kg: must be more than 0 where c2, c3, k2 and k3 are all 0, nothing holds the lower frame");
 
   moment_bound.setConstant(bounded ? p.zspring.Mf : 1);
   mass << p.m1, p.zspring.J1, p.zspring.J2, p.m2, p.m3;

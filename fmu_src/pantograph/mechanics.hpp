@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
-#include "resolvent.hpp"
 #include "parameters.hpp"
+#include "resolvent.hpp"
 #include "zspring.hpp"
 
 namespace zspring {

@@ -44,7 +44,7 @@ DISCRETE(contact_dot_closed, x.m.parameters.drive != Drive::Wire || x.s.contact_
 LINEAR(zspring_dot_alpha, q[ALPHA])
 LINEAR(zspring_dot_beta, q[BETA])
 OUTPUT(zspring_dot_length, x.spring.length, stretch(x, d))
-OUTPUT(zspring_dot_force, x.spring.tension, x.m.parameters.zspring.k * stretch(x, d))
+OUTPUT(zspring_dot_force, x.spring.tension, x.m.parameters.zspring.k* stretch(x, d))
 OUTPUT(zspring_dot_moment_alpha, x.m.moment_bound[0] * x.s.s[0], x.m.moment_bound[0] * d.s[0])
 OUTPUT(zspring_dot_moment_beta, x.m.moment_bound[1] * x.s.s[1], x.m.moment_bound[1] * d.s[1])
 OUTPUT(energy_dot_kinetic, x.m.kinetic_energy(x.s.v), d.v.dot(x.m.mass.cwiseProduct(x.s.v)))
@@ -59,8 +59,7 @@ DISCRETE(bench_dot_H_re, x.bench.H_re)
 DISCRETE(bench_dot_H_im, x.bench.H_im)
 DISCRETE(bench_dot_change, x.bench.change)
 DISCRETE(bench_dot_periods, x.bench.periods)
-DISCRETE(bench_dot_steps_per_period,
-         steps_in_period(x.m.parameters.bench_frequency, x.m.parameters.solver.step))
+DISCRETE(bench_dot_steps_per_period, steps_in_period(x.m.parameters.bench_frequency, x.m.parameters.solver.step))
 
 Outputs outputs(const View& x) { return output_values(x); }
 Outputs outputs_change(const View& x, const MechanicalState& d) { return output_changes(x, d); }

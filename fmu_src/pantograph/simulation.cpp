@@ -56,11 +56,11 @@ std::optional<Discard> Simulation::advance(const Inputs& inputs, double length) 
     return Discard{unsolved->time,
                    text("no solution even after halving the internal step to 1/1024: the spring would have no "
                         "length, or the values overflow")};
-  return Discard{unsolved->time,
-                 text("no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
-                      "iterations: %d",
-                      dof_name[end.dof], end.residual, end.dof == ALPHA || end.dof == BETA ? "N.m" : "N",
-                      end.iterations)};
+  return Discard{
+      unsolved->time,
+      text("no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
+           "iterations: %d",
+           dof_name[end.dof], end.residual, end.dof == ALPHA || end.dof == BETA ? "N.m" : "N", end.iterations)};
 }
 
 // The accelerations of HHT are its own; no output shows them.
@@ -76,12 +76,6 @@ bool Simulation::is_possible() const {
       return false;
   return held_.length == 0 ||
          (held_.length > 0 && !too_long(held_.length, CommunicationStep(hht_, held_).largest_internal_step()));
-}
-
-void Simulation::read(Reader& reader) {
-  visit_state(reader);
-  forget_outputs();
-  if (!is_possible() || !all_finite(outputs())) refuse(numbers_of_no_simulation);
 }
 
 Text Simulation::describe_run() const {
@@ -101,8 +95,8 @@ std::optional<Text> Simulation::describe_imbalance() const {
   const Inputs& u = held_.inputs;
   const auto describe = [&](const char* name, double value, const char* unit, double balanced) {
     return text(
-        "%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step", name,
-        value, unit, balanced, unit);
+        "%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
+        name, value, unit, balanced, unit);
   };
   if (p.drive == Drive::Force && u.contact_force.value != p.static_force)
     return describe("contact_force", u.contact_force.value, "N", p.static_force);

@@ -25,7 +25,6 @@ class Simulation final : public Model<Parameters, Inputs> {
   std::optional<Text> describe_step() const override;
 
   void write(Writer& writer) override { visit_state(writer); }
-  void read(Reader& reader) override;
 
   const StaticStiffness& calculated() const { return mechanics_.stiffness; }
   const Statistics& statistics() const { return state_.mechanical.statistics; }
@@ -34,7 +33,8 @@ class Simulation final : public Model<Parameters, Inputs> {
   View view() const { return {hht_, state_.mechanical, state_.bench}; }
   Outputs present_outputs() const override { return zspring::outputs(view()); }
   bool is_finite();
-  bool is_possible() const;
+  void read(Reader& reader) override { visit_state(reader); }
+  bool is_possible() const override;
   MechanicalState at_rest(const Inputs& inputs) const;
   Boundary initial_boundary(const Inputs& inputs) const;
   template <class Visitor>

@@ -34,13 +34,15 @@ inline Vector4 length_gradient(const ZSpringParameters& z, const Shape& s) {
 
 }  // namespace
 
-std::optional<ZSpringGeometry> zspring_geometry(const ZSpringParameters& z, double alpha, double beta, double gap) {
+std::optional<ZSpringGeometry> zspring_geometry(const ZSpringParameters& z, double alpha, double beta,
+                                                double gap) {
   const std::optional<Shape> s = shape(z, alpha, beta, gap);
   if (!s) return std::nullopt;
   return ZSpringGeometry{s->length, z.k * (s->length - z.l0), length_gradient(z, *s)};
 }
 
-std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta, double gap) {
+std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta,
+                                                double gap) {
   const std::optional<Shape> known = shape(z, alpha, beta, gap);
   if (!known) return std::nullopt;
   const Shape& s = *known;

@@ -12,8 +12,7 @@ extern "C" {
 // spring has no direction.
 int probe_zspring(const double parameters[5], const double coordinates[3], double out[21]) {
   const ZSpringParameters z{parameters[0], parameters[1], parameters[2], parameters[3], parameters[4], 0, 0, 0, 1};
-  const std::optional<ElementResponse> r =
-      zspring_response(z, coordinates[0], coordinates[1], coordinates[2]);
+  const std::optional<ElementResponse> r = zspring_response(z, coordinates[0], coordinates[1], coordinates[2]);
   if (!r) return 0;
   *out++ = r->energy;
   for (int i = 0; i < 4; ++i) *out++ = r->force[i];

@@ -1,4 +1,5 @@
-// The pantograph as the FMI layer sees it: each variable of its model description, but the outputs, and what it stands for.
+// The pantograph as the FMI layer sees it: each variable of its model description, but the outputs, and what it
+// stands for.
 #pragma once
 
 #include "pantograph/simulation.hpp"
