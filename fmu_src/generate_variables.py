@@ -46,8 +46,8 @@ def causality(variable):
     return name[0].upper() + name[1:]
 
 
-def row(index, variable, enums, place):
-    """One X(...) line of the table, its columns as in the heading that `table` writes."""
+def row(index, variable, enums):
+    """A row of the table of variables but for the last column, as in the heading that `table` writes."""
     name = variable.get("name")
     identifier, element = identifier_and_index(name)
     value = variable[0]
@@ -65,84 +65,80 @@ def row(index, variable, enums, place):
     return (
         f'{identifier}, {element}, "{name}", {value.tag}, {causality(variable)}, '
         f'{str(variable.get("variability") == "tunable").lower()}, "{value.get("unit", "")}", {start or 0}, '
-        f'{low or "-" + UNBOUNDED}, {high or UNBOUNDED}, "{", ".join(items)}", {place}'
+        f'{low or "-" + UNBOUNDED}, {high or UNBOUNDED}, "{", ".join(items)}"'
     )
 
 
-def x_macro(name, columns, rows):
-    """Lines that define a macro which applies its argument to each row."""
-    return [f"// {columns}", f"#define {name}(X) \\", " \\\n".join(f"  X({r})" for r in rows)]
+def macro(name, columns, rows):
+    """Text that defines a macro which applies its argument to each row."""
+    return f"// {columns}\n#define ZSPRING_{name}(X) \\\n" + " \\\n".join(f"  X({r})" for r in rows) + "\n"
 
 
 def table(root, guid):
     """Text of variables.inc."""
-    variables, enums = list(root.find("ModelVariables")), enumerations(root)
-    identifiers = {}
+    variables, enums, identifiers, outputs = list(root.find("ModelVariables")), enumerations(root), {}, []
     for v in variables:
-        continuous = str(v[0].tag == "Real" and v.get("variability", "continuous") == "continuous").lower()
-        identifiers[identifier_and_index(v.get("name"))[0]] = f"{causality(v)}, {continuous}"
-    outputs = [v for v in variables if v.get("causality") == "output"]
-    places = {v: place for place, v in enumerate(outputs)}
-    return "\n".join([
-        "// Generated from the model description.",
-        f'#define ZSPRING_GUID "{guid}"',
-        f'#define ZSPRING_MODEL_IDENTIFIER "{root.find("CoSimulation").get("modelIdentifier")}"',
-        *x_macro("ZSPRING_IDENTIFIERS", "identifier, causality, continuous",
-                 [f"{identifier}, {kind}" for identifier, kind in identifiers.items()]),
-        *x_macro("ZSPRING_VARIABLES",
-                 "identifier, index, name, type, causality, tunable, unit, start, min, max, items of an enumeration, "
-                 "place among the outputs",
-                 [row(i, v, enums, places.get(v, -1)) for i, v in enumerate(variables)]),
-        *x_macro("ZSPRING_OUTPUTS", "identifier, index",
-                 ["{}, {}".format(*identifier_and_index(v.get("name"))) for v in outputs]),
-        *x_macro("ZSPRING_LOG_CATEGORIES", "name", [c.get("name") for c in root.iter("Category")]),
-        "",
-    ])
+        identifier, element = identifier_and_index(v.get("name"))
+        continuous = v[0].tag == "Real" and v.get("variability", "continuous") == "continuous"
+        identifiers[identifier] = f"{identifier}, {causality(v)}, {str(continuous).lower()}"
+        if v.get("causality") == "output":
+            outputs.append(f"{identifier}, {element}")
+    place = iter(range(len(outputs)))
+    rows = [f'{row(i, v, enums)}, {next(place) if v.get("causality") == "output" else -1}'
+            for i, v in enumerate(variables)]
+    return (
+        "// Generated from the model description.\n"
+        f'#define ZSPRING_GUID "{guid}"\n'
+        f'#define ZSPRING_MODEL_IDENTIFIER "{root.find("CoSimulation").get("modelIdentifier")}"\n'
+        + macro("IDENTIFIERS", "identifier, causality, continuous", identifiers.values())
+        + macro("VARIABLES", "identifier, index, name, type, causality, tunable, unit, start, min, max, "
+                "items of an enumeration, place among the outputs", rows)
+        + macro("OUTPUTS", "identifier, index", outputs)
+        + macro("LOG_CATEGORIES", "name", [c.get("name") for c in root.iter("Category")])
+    )
 
 
 def dependencies(root):
     """Of each output and calculated parameter, the indices from 1 that it declares; {its index: [index, ...]}."""
     groups = {g.get("name"): g.get("variables") for g in root.iter("Group")}
-    variables = list(root.find("ModelVariables"))
-    known = {v.get("name"): i for i, v in enumerate(variables, 1) if v.get("causality") in ("parameter", "input")}
+    variables = list(enumerate(root.find("ModelVariables"), 1))
+    known = {v.get("name"): i for i, v in variables if v.get("causality") in ("parameter", "input")}
 
     def indices(names, where):
+        if names is None:
+            refuse(f"{where}: {DECLARED} is missing or names no group; it is empty where there are none")
         found = set()
         for name in names.split():
             pattern = re.escape(name).replace(r"\*", ".*")
-            matches = (indices(groups.get(name[1:], ""), where) if name.startswith("@")
-                       else {i for n, i in known.items() if re.fullmatch(pattern, n)})
+            matches = {i for n, i in known.items() if re.fullmatch(pattern, n)}
+            if name.startswith("@"):
+                matches = indices(groups.get(name[1:]), where)
             if not matches:
-                refuse(f"{where}: {DECLARED}: {name} is no parameter, input or group")
+                refuse(f"{where}: {DECLARED}: {name} is no parameter or input")
             found |= matches
         return found
 
-    declared = {}
-    for i, v in enumerate(variables, 1):
-        if v.get("causality") in ("output", "calculatedParameter"):
-            if v.get(DECLARED) is None:
-                refuse(f"{v.get('name')}: {DECLARED} is missing; it is empty where there are none")
-            declared[i] = sorted(indices(v.get(DECLARED), v.get("name")))
-    return declared
+    return {i: sorted(indices(v.get(DECLARED), v.get("name"))) for i, v in variables
+            if v.get("causality") in ("output", "calculatedParameter")}
 
 
 def final_description(text, root, guid):
     """The model description as FMI has it: with GUID and ModelStructure, without what only the build reads."""
     variables, declared = list(root.find("ModelVariables")), dependencies(root)
 
-    def unknown(index, known):
-        listed = " ".join(map(str, known))
-        return f'      <Unknown index="{index}" dependencies="{listed}"/> <!-- {variables[index - 1].get("name")} -->\n'
+    def unknowns(tag, listed):
+        lines = [f'      <Unknown index="{i}" dependencies="{" ".join(map(str, known))}"/>'
+                 f' <!-- {variables[i - 1].get("name")} -->\n' for i, known in listed.items()]
+        return f"<{tag}>\n{''.join(lines)}    </{tag}>"
 
     # An input set between two steps acts in the next one only: no output has direct feedthrough.
-    outputs = "".join(unknown(i, []) for i in declared if variables[i - 1].get("causality") == "output")
-    initial = "".join(unknown(i, known) for i, known in declared.items())
+    outputs = {i: [] for i in declared if variables[i - 1].get("causality") == "output"}
     for pattern, replacement, count in (
         ('guid=""', f'guid="{guid}"', 1),
         (r"  <DependencyGroups>.*?</DependencyGroups>\n\n", "", 1),
         (rf'\s+{DECLARED}="[^"]*"', "", len(declared)),
-        ("<Outputs/>", f"<Outputs>\n{outputs}    </Outputs>", 1),
-        ("<InitialUnknowns/>", f"<InitialUnknowns>\n{initial}    </InitialUnknowns>", 1),
+        ("<Outputs/>", unknowns("Outputs", outputs), 1),
+        ("<InitialUnknowns/>", unknowns("InitialUnknowns", declared), 1),
     ):
         text, found = re.subn(pattern, replacement, text, flags=re.DOTALL)
         if found != count:

@@ -130,7 +130,7 @@ void Hht::predict(const StepFactors& f, const Loads& l1, LineState& s) {
   line_.add_springs(s.u, x_);
   mass_.multiply(s.v, mv_);
   x_ += p.damping_mass * mv_;
-  s.a = f.alpha * s.internal - f.weight * x_;
+  s.a = f.hht_alpha * s.internal - f.weight * x_;
   l1.add_to(s.a, f.weight);
   f.factor.solve(s.a);
 }
@@ -142,13 +142,13 @@ void Hht::correct(const StepFactors& f, LineState& s) {
   s.u += f.beta_h2 * s.a;
   s.v += f.gamma_h * s.a;
   mass_.multiply(s.a, ma_);
-  s.internal = (f.alpha / w) * s.internal - (1 / w) * ma_;
+  s.internal = (f.hht_alpha / w) * s.internal - (1 / w) * ma_;
 }
 
 bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s) {
   const Parameters& p = line_.p;
   const double work_before = l0.dot(s.u) + l1.dot(s.u);
-  move_memory(f.alpha, s.h, f.h, s.a_slope, s.a);
+  move_memory(f.hht_alpha, s.h, f.h, s.a_slope, s.a);
   const bool slope_known = tells_slope(f.h, s.h);
   if (slope_known) s.a_slope = s.a;
   old_v_ = s.v;

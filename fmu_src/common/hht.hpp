@@ -12,7 +12,7 @@
 namespace zspring {
 
 struct HhtCoefficients {
-  HhtCoefficients(double hht_alpha, double step) : h(step), alpha(hht_alpha), weight(1 + alpha) {
+  HhtCoefficients(double alpha, double step) : h(step), hht_alpha(alpha), weight(1 + alpha) {
     const double beta = 0.25 * (1 - alpha) * (1 - alpha);
     const double gamma = 0.5 - alpha;
     beta_h2 = beta * h * h;
@@ -22,7 +22,7 @@ struct HhtCoefficients {
   }
 
   double h;                           // s
-  double alpha, weight;               // hht_alpha, 1 + hht_alpha
+  double hht_alpha, weight;           // weight: 1 + hht_alpha
   double beta_h2, gamma_h;            // s2, s
   double old_position, old_velocity;  // (1/2 - beta) h^2, (1 - gamma) h
 };

@@ -25,17 +25,15 @@ enum class Causality { Parameter, CalculatedParameter, Input, Output };
 enum class Id { ZSPRING_IDENTIFIERS(ZSPRING_ENUMERATOR) };
 #undef ZSPRING_ENUMERATOR
 
-constexpr Causality causality_of(Id id) {
-#define ZSPRING_CAUSALITY(id, causality, continuous) Causality::causality,
-  constexpr Causality all[] = {ZSPRING_IDENTIFIERS(ZSPRING_CAUSALITY)};
-#undef ZSPRING_CAUSALITY
-  return all[static_cast<int>(id)];
-}
+struct Kind {
+  Causality causality;
+  bool continuous;
+};
 
-constexpr bool is_continuous(Id id) {
-#define ZSPRING_CONTINUOUS(id, causality, continuous) continuous,
-  constexpr bool all[] = {ZSPRING_IDENTIFIERS(ZSPRING_CONTINUOUS)};
-#undef ZSPRING_CONTINUOUS
+constexpr Kind kind_of(Id id) {
+#define ZSPRING_KIND(id, causality, continuous) {Causality::causality, continuous},
+  constexpr Kind all[] = {ZSPRING_IDENTIFIERS(ZSPRING_KIND)};
+#undef ZSPRING_KIND
   return all[static_cast<int>(id)];
 }
 
@@ -70,17 +68,18 @@ inline bool all_finite(const Outputs& y) {
 
 }  // namespace zspring
 
-#define ZSPRING_OUTPUT(id, is_right, value_of_x, change_with_d)                                           \
-  template <class View>                                                                                   \
-  struct Output<Id::id, View> {                                                                           \
-    static_assert(causality_of(Id::id) == Causality::Output && is_right, #id ": see common/outputs.hpp"); \
-    static auto value([[maybe_unused]] const View& x, [[maybe_unused]] int i) { return value_of_x; }      \
-    template <class State>                                                                                \
-    static double change([[maybe_unused]] const View& x, [[maybe_unused]] const State& d,                 \
-                         [[maybe_unused]] int i) {                                                        \
-      return change_with_d;                                                                               \
-    }                                                                                                     \
+#define ZSPRING_OUTPUT(id, is_continuous, value_of_x, change_with_d)                                 \
+  template <class View>                                                                              \
+  struct Output<Id::id, View> {                                                                      \
+    static_assert(kind_of(Id::id).causality == Causality::Output, #id ": is no output");             \
+    static_assert(kind_of(Id::id).continuous == is_continuous, #id ": see common/outputs.hpp");      \
+    static auto value([[maybe_unused]] const View& x, [[maybe_unused]] int i) { return value_of_x; } \
+    template <class State>                                                                           \
+    static double change([[maybe_unused]] const View& x, [[maybe_unused]] const State& d,            \
+                         [[maybe_unused]] int i) {                                                   \
+      return change_with_d;                                                                          \
+    }                                                                                                \
   };
-#define OUTPUT(id, value_of_x, change_with_d) ZSPRING_OUTPUT(id, is_continuous(Id::id), value_of_x, change_with_d)
+#define OUTPUT(id, value_of_x, change_with_d) ZSPRING_OUTPUT(id, true, value_of_x, change_with_d)
 #define LINEAR(id, member) OUTPUT(id, x.s.member, d.member)
-#define DISCRETE(id, value_of_x) ZSPRING_OUTPUT(id, !is_continuous(Id::id), value_of_x, 0)
+#define DISCRETE(id, value_of_x) ZSPRING_OUTPUT(id, false, value_of_x, 0)

@@ -3,18 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 
 #include "failure.hpp"
+#include "statistics.hpp"
 
 namespace zspring {
 
 inline constexpr double rounding_of_time = 1e-6;  // of an internal step: hosts add up their communication points
 
 // The fewest equal ones of at most `largest` s in `length` s.
-inline std::int64_t internal_steps(double length, double largest) {
-  return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(length / largest - rounding_of_time)));
+inline Count internal_steps(double length, double largest) {
+  return std::max<Count>(1, static_cast<Count>(std::ceil(length / largest - rounding_of_time)));
 }
 
 // More internal steps would take hours: such a length is a mistake.

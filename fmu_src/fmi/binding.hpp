@@ -36,19 +36,19 @@ void assign(Enum& member, double x) {
 
 template <Id id>
 constexpr Binding bind() {
-  static_assert(causality_of(id) == Causality::Output, "bindings.hpp lacks a variable");
+  static_assert(kind_of(id).causality == Causality::Output, "bindings.hpp lacks a variable");
   return {};
 }
 
 }  // namespace zspring::fmi
 
-#define ZSPRING_BINDING(id, kind, ...)                                                       \
-  template <>                                                                                \
-  constexpr Binding bind<Id::id>() {                                                         \
-    static_assert(causality_of(Id::id) == Causality::kind, #id ": is of another causality"); \
-    Binding b;                                                                               \
-    __VA_ARGS__                                                                              \
-    return b;                                                                                \
+#define ZSPRING_BINDING(id, kind, ...)                                                            \
+  template <>                                                                                     \
+  constexpr Binding bind<Id::id>() {                                                              \
+    static_assert(kind_of(Id::id).causality == Causality::kind, #id ": is of another causality"); \
+    Binding b;                                                                                    \
+    __VA_ARGS__                                                                                   \
+    return b;                                                                                     \
   }
 #define PARAMETER(id, member)                                                                                  \
   ZSPRING_BINDING(                                                                                             \

@@ -22,20 +22,16 @@ inline constexpr unsigned readable = any_phase & ~Instantiated;
 inline constexpr unsigned after_step = stepping | Terminated | Error;
 
 inline const char* phase_name(Phase phase) {
-  switch (phase) {
-    case Instantiated:
-      return "before fmi2EnterInitializationMode";
-    case Initialization:
-      return "in Initialization Mode";
-    case StepComplete:
-      return "between steps";
-    case StepFailed:
-      return "after a discarded step";
-    case Terminated:
-      return "after fmi2Terminate";
-    case Error:
-      break;
-  }
+  constexpr struct {
+    Phase phase;
+    const char* name;
+  } names[] = {{Instantiated, "before fmi2EnterInitializationMode"},
+               {Initialization, "in Initialization Mode"},
+               {StepComplete, "between steps"},
+               {StepFailed, "after a discarded step"},
+               {Terminated, "after fmi2Terminate"}};
+  for (const auto& n : names)
+    if (n.phase == phase) return n.name;
   return "after an internal error";
 }
 

@@ -131,8 +131,8 @@ class CommunicationStep {
   std::optional<Unsolved> cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0,
                                 const Boundary& b1, double begin, double h, int halvings, OnStep& on_step) const {
     MechanicalState next;
-    const double h_last = s.h, alpha = p_.solver.hht_alpha;
-    move_memory(alpha, h_last, h, s.a_slope, s.a);
+    const double h_last = s.h, hht_alpha = p_.solver.hht_alpha;
+    move_memory(hht_alpha, h_last, h, s.a_slope, s.a);
     const Convergence end = hht_.step(s, b0, b1, h, next);
     s.statistics.add_attempt(end.iterations);
     if (end.reached) {
@@ -143,7 +143,7 @@ class CommunicationStep {
       return std::nullopt;
     }
     if (halvings == most_halvings) return Unsolved{begin, end};
-    move_memory(alpha, h, h_last, s.a_slope, s.a);
+    move_memory(hht_alpha, h, h_last, s.a_slope, s.a);
     s.statistics.refinements += 1;
     Boundary middle;
     boundary(begin + 0.5 * h, middle);

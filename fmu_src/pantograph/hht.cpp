@@ -90,10 +90,10 @@ bool Hht::evaluate(const StepCoefficients& c, const MechanicalState& from, const
     }
     t.q[i] = from.q[i] + c.h * from.v[i] + c.old_position * from.a[i] + c.beta_h2 * t.a[i];
   }
-  const std::optional<Springs> springs = m_.springs(t.q);
-  if (!springs) return false;
-  t.head_tangent = springs->head_tangent;
-  t.internal = springs->force + m_.damping_force(t.v);
+  const std::optional<ElementResponse> head = m_.head_response(t.q);
+  if (!head) return false;
+  t.head_tangent = head->tangent;
+  t.internal = m_.spring_force(t.q, *head) + m_.damping_force(t.v);
   joints(t.internal) += m_.moment_bound.cwiseProduct(t.s);
   if (!head_imposed()) t.contact = contact(b1, t.q[U1], t.v[U1]);
   return true;
@@ -184,7 +184,7 @@ Convergence Hht::step(const MechanicalState& from, const Boundary& b0, const Bou
   bool small_change = false;
   for (;; ++end.iterations) {
     if (!evaluate(c, from, b1, direct, t)) break;
-    Vector5 r = m_.mass.cwiseProduct(t.a) + c.weight * (t.internal - uplift) - c.alpha * R0;
+    Vector5 r = m_.mass.cwiseProduct(t.a) + c.weight * (t.internal - uplift) - c.hht_alpha * R0;
     if (head_imposed())
       r[U1] = 0;
     else

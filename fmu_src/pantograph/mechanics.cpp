@@ -74,17 +74,14 @@ std::optional<ElementResponse> Mechanics::head_response(const Vector5& q) const 
   return out;
 }
 
-std::optional<Springs> Mechanics::springs(const Vector5& q) const {
-  const std::optional<ElementResponse> head = head_response(q);
-  if (!head) return std::nullopt;
+Vector5 Mechanics::spring_force(const Vector5& q, const ElementResponse& head) const {
   const double f2 = parameters.k2 * (q[U2] - q[U3]);
-  Springs out;
-  out.head_tangent = head->tangent;
-  out.force.head<4>() = head->force - head_preload_;
-  out.force[U1] -= parameters.static_force;
-  out.force[U2] += f2;
-  out.force[U3] = parameters.k3 * q[U3] - f2;
-  return out;
+  Vector5 f;
+  f.head<4>() = head.force - head_preload_;
+  f[U1] -= parameters.static_force;
+  f[U2] += f2;
+  f[U3] = parameters.k3 * q[U3] - f2;
+  return f;
 }
 
 Vector5 Mechanics::spring_force_change(const Matrix4& head_tangent, const Vector5& dq) const {
@@ -111,11 +108,9 @@ double Mechanics::damping_power(const Vector5& v) const {
 
 double Mechanics::kinetic_energy(const Vector5& v) const { return 0.5 * v.dot(mass.cwiseProduct(v)); }
 
-double Mechanics::strain_energy(const Vector5& q) const {
-  const std::optional<ElementResponse> head = head_response(q);
-  if (!head) return 0;  // not reached: accepted states have a direction
+double Mechanics::strain_energy(const Vector5& q, const ElementResponse& head) const {
   const double x = q[U2] - q[U3];
-  return head->energy - strain_at_rest_ + 0.5 * parameters.k2 * x * x + 0.5 * parameters.k3 * q[U3] * q[U3];
+  return head.energy - strain_at_rest_ + 0.5 * parameters.k2 * x * x + 0.5 * parameters.k3 * q[U3] * q[U3];
 }
 
 ZSpringGeometry Mechanics::spring(const Vector5& q) const {

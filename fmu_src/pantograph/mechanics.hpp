@@ -36,25 +36,22 @@ inline Vector5 on_masses(const Eigen::Vector3d& f) {
 
 inline constexpr const char* dof_name[] = {"head", "rod alpha", "rod beta", "upper frame", "lower frame"};
 
-struct Springs {
-  Vector5 force;  // N and N m, of all springs less the preload
-  Matrix4 head_tangent;
-};
-
 class Mechanics {
  public:
   // Throws Refusal for parameters that make no solvable model. Refers to `p`.
   explicit Mechanics(const Parameters& p);
 
-  // None where the spring has no direction.
-  std::optional<Springs> springs(const Vector5& q) const;
+  // Of the head's suspension, preload included; none where the spring has no direction.
+  std::optional<ElementResponse> head_response(const Vector5& q) const;
+  // Of all springs less the preload, with that response.
+  Vector5 spring_force(const Vector5& q, const ElementResponse& head) const;
   Vector5 spring_force_change(const Matrix4& head_tangent, const Vector5& dq) const;
 
   Vector5 damping_force(const Vector5& v) const;
   double damping_power(const Vector5& v) const;
   double kinetic_energy(const Vector5& v) const;
   // Strain energy above that of the static state, J.
-  double strain_energy(const Vector5& q) const;
+  double strain_energy(const Vector5& q, const ElementResponse& head) const;
 
   ZSpringGeometry spring(const Vector5& q) const;  // zeros with Suspension::Linear
 
@@ -69,8 +66,6 @@ class Mechanics {
   double load;             // N, m1 gravity + static_force
 
  private:
-  std::optional<ElementResponse> head_response(const Vector5& q) const;
-
   StaticState static_;  // not used with Suspension::Linear
   Vector4 head_preload_ = Vector4::Zero();
   double strain_at_rest_ = 0;

@@ -17,9 +17,10 @@ double head_acceleration(const Hht& hht, const MechanicalState& s) {
 
 double stretch(const View& x, const MechanicalState& d) { return x.spring.gradient.dot(d.q.head<4>()); }
 
+double elastic(const View& x) { return x.head ? x.m.strain_energy(x.s.q, *x.head) : 0; }
+
 double elastic_change(const View& x, const MechanicalState& d) {
-  const std::optional<Springs> springs = x.m.springs(x.s.q);
-  return springs ? d.q.dot(springs->force + x.m.preload) : 0;
+  return x.head ? d.q.dot(x.m.spring_force(x.s.q, *x.head) + x.m.preload) : 0;
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ OUTPUT(zspring_dot_force, x.spring.tension, x.m.parameters.zspring.k* stretch(x,
 OUTPUT(zspring_dot_moment_alpha, x.m.moment_bound[0] * x.s.s[0], x.m.moment_bound[0] * d.s[0])
 OUTPUT(zspring_dot_moment_beta, x.m.moment_bound[1] * x.s.s[1], x.m.moment_bound[1] * d.s[1])
 OUTPUT(energy_dot_kinetic, x.m.kinetic_energy(x.s.v), d.v.dot(x.m.mass.cwiseProduct(x.s.v)))
-OUTPUT(energy_dot_elastic, x.m.strain_energy(x.s.q), elastic_change(x, d))
+OUTPUT(energy_dot_elastic, elastic(x), elastic_change(x, d))
 LINEAR(energy_dot_dissipated, dissipated)
 LINEAR(energy_dot_work, work)
 DISCRETE(solver_dot_iterations, x.s.statistics.iterations)

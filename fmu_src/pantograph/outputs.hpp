@@ -10,13 +10,19 @@ namespace zspring {
 // What the definitions in outputs.cpp are written with.
 struct View {
   View(const Hht& integrator, const MechanicalState& state, const BenchState& analysis)
-      : hht(integrator), m(hht.mechanics()), s(state), bench(analysis), spring(m.spring(s.q)) {}
+      : hht(integrator),
+        m(hht.mechanics()),
+        s(state),
+        bench(analysis),
+        spring(m.spring(s.q)),
+        head(m.head_response(s.q)) {}
 
   const Hht& hht;
   const Mechanics& m;
   const MechanicalState& s;
   const BenchState& bench;
   ZSpringGeometry spring;
+  std::optional<ElementResponse> head;  // there is one: accepted states have a direction
 };
 
 Outputs outputs(const View& x);

@@ -25,7 +25,7 @@ Boundary Simulation::initial_boundary(const Inputs& u) const {
 MechanicalState Simulation::at_rest(const Inputs& inputs) const {
   MechanicalState s;
   s.q = mechanics_.rest;
-  if (const std::optional<Springs> springs = mechanics_.springs(s.q)) s.internal = springs->force;
+  if (const auto head = mechanics_.head_response(s.q)) s.internal = mechanics_.spring_force(s.q, *head);
   s.boundary = initial_boundary(inputs);
   s.contact_force =
       hht_.head_imposed() ? hht_.reaction(s.boundary, s.internal) : hht_.contact(s.boundary, 0, 0).force;
@@ -93,21 +93,23 @@ std::optional<Text> Simulation::describe_step() const {
 std::optional<Text> Simulation::describe_imbalance() const {
   const Parameters& p = mechanics_.parameters;
   const Inputs& u = held_.inputs;
-  const auto describe = [&](const char* name, double value, const char* unit, double balanced) {
-    return text(
-        "%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
-        name, value, unit, balanced, unit);
+  const struct {
+    const char *name, *unit;
+    bool acts;
+    double value, balanced;
+  } inputs[] = {
+      {"contact_force", "N", p.drive == Drive::Force, u.contact_force.value, p.static_force},
+      {"head_displacement", "m", p.drive == Drive::Displacement, u.head_displacement.value, 0},
+      {"wire_height", "m", p.drive == Drive::Wire, u.wire_height.value, 0},
+      {"uplift.head", "N", !hht_.head_imposed(), u.uplift[0].value, 0},
+      {"uplift.upper_frame", "N", true, u.uplift[1].value, 0},
+      {"uplift.lower_frame", "N", true, u.uplift[2].value, 0},
   };
-  if (p.drive == Drive::Force && u.contact_force.value != p.static_force)
-    return describe("contact_force", u.contact_force.value, "N", p.static_force);
-  if (p.drive == Drive::Displacement && u.head_displacement.value != 0)
-    return describe("head_displacement", u.head_displacement.value, "m", 0);
-  if (p.drive == Drive::Wire && u.wire_height.value != 0)
-    return describe("wire_height", u.wire_height.value, "m", 0);
-  const char* names[] = {"uplift.head", "uplift.upper_frame", "uplift.lower_frame"};
-  for (int k = 0; k < 3; ++k)
-    if (u.uplift[k].value != 0 && !(k == 0 && hht_.head_imposed()))
-      return describe(names[k], u.uplift[k].value, "N", 0);
+  for (const auto& i : inputs)
+    if (i.acts && i.value != i.balanced)
+      return text(
+          "%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
+          i.name, i.value, i.unit, i.balanced, i.unit);
   return std::nullopt;
 }
 

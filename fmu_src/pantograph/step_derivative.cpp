@@ -47,7 +47,7 @@ MechanicalState step_derivative(const Hht& hht, const MechanicalState& from, con
     old[U1] += head_force_change(p, closed, db0, dfrom.q[U1], dfrom.v[U1]);
     now[U1] += head_force_change(p, t.contact.closed, db1, d.q[U1], d.v[U1]);
   }
-  Vector5 x = m.mass.cwiseProduct(d.a) + c.weight * now - c.alpha * old;
+  Vector5 x = m.mass.cwiseProduct(d.a) + c.weight * now - c.hht_alpha * old;
   if (imposed) x[U1] = 0;
   hht.solve(c, t, x);
 

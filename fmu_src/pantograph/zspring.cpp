@@ -43,20 +43,21 @@ std::optional<ZSpringGeometry> zspring_geometry(const ZSpringParameters& z, doub
 
 std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta,
                                                 double gap) {
+  std::optional<ElementResponse> result;
   const std::optional<Shape> known = shape(z, alpha, beta, gap);
-  if (!known) return std::nullopt;
+  if (!known) return result;
   const Shape& s = *known;
   const double T = z.k * (s.length - z.l0);
   const Vector4 n = length_gradient(z, s);
   const Vector4 p(-s.ex, z.L1 * (s.ey * s.sin_a - s.ex * s.cos_a), z.L2 * (s.ey * s.sin_b - s.ex * s.cos_b), s.ex);
-  ElementResponse out;
+  ElementResponse& out = result.emplace();
   out.energy = 0.5 * z.k * (s.length - z.l0) * (s.length - z.l0);
   out.force = T * n;
   out.tangent.noalias() = (z.k * n) * n.transpose();
   out.tangent.noalias() += (T / s.length * p) * p.transpose();
   out.tangent(1, 1) += T * z.L1 * (s.ey * s.sin_a - s.ex * s.cos_a);
   out.tangent(2, 2) += T * z.L2 * (s.ey * s.sin_b - s.ex * s.cos_b);
-  return out;
+  return result;
 }
 
 StaticState zspring_static_state(const ZSpringParameters& z, double load) {
