@@ -67,7 +67,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     hht_.jump(loads_at(line_.mesh, before_.passage), l0, now);
   }
   const LineState& from = n > 1 ? now : before_;
-  for (double k = 1; k <= n; ++k) {
+  for (Count k = 1; k <= step.internal_steps(); ++k) {
     const Loads l1 = step.loads(k / n * length_), dl1 = step.loads_change(change_of, k / n * length_);
     if (k < n) {
       next = now;

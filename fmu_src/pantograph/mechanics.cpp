@@ -51,33 +51,33 @@ Mechanics::Mechanics(const Parameters& p) : parameters(p), law(friction_law(p)) 
   static_ = zspring_static_state(p.zspring, load);
   stiffness = {static_.theta, static_.k_locked, static_.k_free};
   rest[ALPHA] = rest[BETA] = static_.theta;
-  const std::optional<ElementResponse> at_rest =
-      zspring_response(p.zspring, static_.theta, static_.theta, static_.gap);
+  const auto at_rest = zspring_response(p.zspring, static_.theta, static_.theta, static_.gap);
   if (!at_rest)
     refuse("zspring.l0 = %g m: the spring has no length in the static state; enlarge l0 or d", p.zspring.l0);
   // Taken from the same code as in motion, so that the state of rest is balanced to the last bit.
-  head_preload_ = at_rest->force;
-  strain_at_rest_ = at_rest->energy;
-  static_tangent = p.suspension == Suspension::LinearLocked ? vertical_spring(static_.k_locked) : at_rest->tangent;
-  preload.head<4>() += head_preload_;
+  at_rest_ = *at_rest;
+  static_tangent = p.suspension == Suspension::LinearLocked ? vertical_spring(static_.k_locked) : at_rest_.tangent;
+  preload.head<4>() += at_rest_.force;
 }
 
 std::optional<ElementResponse> Mechanics::head_response(const Vector5& q) const {
   if (parameters.suspension == Suspension::ZSpring)
     return zspring_response(parameters.zspring, q[ALPHA], q[BETA], static_.gap + q[U2] - q[U1]);
   const Vector4 x = q.head<4>() - rest.head<4>();
-  ElementResponse out;
+  ElementResponse out = at_rest_;
   out.tangent = static_tangent;
-  out.force = head_preload_;
   out.force.noalias() += static_tangent * x;
-  out.energy = strain_at_rest_ + 0.5 * x.dot(head_preload_ + out.force);
+  out.energy = at_rest_.energy + 0.5 * x.dot(at_rest_.force + out.force);
+  const double stretch = out.gradient.dot(x);
+  out.length += stretch;
+  out.tension += parameters.zspring.k * stretch;
   return out;
 }
 
 Vector5 Mechanics::spring_force(const Vector5& q, const ElementResponse& head) const {
   const double f2 = parameters.k2 * (q[U2] - q[U3]);
   Vector5 f;
-  f.head<4>() = head.force - head_preload_;
+  f.head<4>() = head.force - at_rest_.force;
   f[U1] -= parameters.static_force;
   f[U2] += f2;
   f[U3] = parameters.k3 * q[U3] - f2;
@@ -110,20 +110,7 @@ double Mechanics::kinetic_energy(const Vector5& v) const { return 0.5 * v.dot(ma
 
 double Mechanics::strain_energy(const Vector5& q, const ElementResponse& head) const {
   const double x = q[U2] - q[U3];
-  return head.energy - strain_at_rest_ + 0.5 * parameters.k2 * x * x + 0.5 * parameters.k3 * q[U3] * q[U3];
-}
-
-ZSpringGeometry Mechanics::spring(const Vector5& q) const {
-  const ZSpringGeometry none{0, 0, Vector4::Zero()};
-  const ZSpringParameters& z = parameters.zspring;
-  if (parameters.suspension == Suspension::Linear) return none;
-  if (parameters.suspension == Suspension::ZSpring)
-    return zspring_geometry(z, q[ALPHA], q[BETA], static_.gap + q[U2] - q[U1]).value_or(none);
-  ZSpringGeometry out = zspring_geometry(z, static_.theta, static_.theta, static_.gap).value_or(none);
-  const double stretch = out.gradient.dot(q.head<4>() - rest.head<4>());
-  out.length += stretch;
-  out.tension += z.k * stretch;
-  return out;
+  return head.energy - at_rest_.energy + 0.5 * parameters.k2 * x * x + 0.5 * parameters.k3 * q[U3] * q[U3];
 }
 
 }  // namespace zspring

@@ -53,8 +53,6 @@ class Mechanics {
   // Strain energy above that of the static state, J.
   double strain_energy(const Vector5& q, const ElementResponse& head) const;
 
-  ZSpringGeometry spring(const Vector5& q) const;  // zeros with Suspension::Linear
-
   const Parameters& parameters;
   StaticStiffness stiffness;
   FrictionLaw law;
@@ -67,8 +65,7 @@ class Mechanics {
 
  private:
   StaticState static_;  // not used with Suspension::Linear
-  Vector4 head_preload_ = Vector4::Zero();
-  double strain_at_rest_ = 0;
+  ElementResponse at_rest_{0, Vector4::Zero(), Matrix4::Zero(), 0, 0, Vector4::Zero()};
 };
 
 }  // namespace zspring

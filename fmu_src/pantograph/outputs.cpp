@@ -15,12 +15,10 @@ double head_acceleration(const Hht& hht, const MechanicalState& s) {
   return unbalanced_force(s)[U1] / hht.mechanics().mass[U1];
 }
 
-double stretch(const View& x, const MechanicalState& d) { return x.spring.gradient.dot(d.q.head<4>()); }
-
-double elastic(const View& x) { return x.head ? x.m.strain_energy(x.s.q, *x.head) : 0; }
+double stretch(const View& x, const MechanicalState& d) { return x.head.gradient.dot(d.q.head<4>()); }
 
 double elastic_change(const View& x, const MechanicalState& d) {
-  return x.head ? d.q.dot(x.m.spring_force(x.s.q, *x.head) + x.m.preload) : 0;
+  return d.q.dot(x.m.spring_force(x.s.q, x.head) + x.m.preload);
 }
 
 }  // namespace
@@ -44,12 +42,12 @@ LINEAR(contact_dot_force, contact_force)
 DISCRETE(contact_dot_closed, x.m.parameters.drive != Drive::Wire || x.s.contact_force > 0)
 LINEAR(zspring_dot_alpha, q[ALPHA])
 LINEAR(zspring_dot_beta, q[BETA])
-OUTPUT(zspring_dot_length, x.spring.length, stretch(x, d))
-OUTPUT(zspring_dot_force, x.spring.tension, x.m.parameters.zspring.k* stretch(x, d))
+OUTPUT(zspring_dot_length, x.head.length, stretch(x, d))
+OUTPUT(zspring_dot_force, x.head.tension, x.m.parameters.zspring.k* stretch(x, d))
 OUTPUT(zspring_dot_moment_alpha, x.m.moment_bound[0] * x.s.s[0], x.m.moment_bound[0] * d.s[0])
 OUTPUT(zspring_dot_moment_beta, x.m.moment_bound[1] * x.s.s[1], x.m.moment_bound[1] * d.s[1])
 OUTPUT(energy_dot_kinetic, x.m.kinetic_energy(x.s.v), d.v.dot(x.m.mass.cwiseProduct(x.s.v)))
-OUTPUT(energy_dot_elastic, elastic(x), elastic_change(x, d))
+OUTPUT(energy_dot_elastic, x.m.strain_energy(x.s.q, x.head), elastic_change(x, d))
 LINEAR(energy_dot_dissipated, dissipated)
 LINEAR(energy_dot_work, work)
 DISCRETE(solver_dot_iterations, x.s.statistics.iterations)

@@ -14,15 +14,13 @@ struct View {
         m(hht.mechanics()),
         s(state),
         bench(analysis),
-        spring(m.spring(s.q)),
-        head(m.head_response(s.q)) {}
+        head(m.head_response(s.q).value_or(ElementResponse())) {}
 
   const Hht& hht;
   const Mechanics& m;
   const MechanicalState& s;
   const BenchState& bench;
-  ZSpringGeometry spring;
-  std::optional<ElementResponse> head;  // there is one: accepted states have a direction
+  ElementResponse head;  // there is one: the spring of an accepted state has a direction
 };
 
 Outputs outputs(const View& x);

@@ -34,23 +34,17 @@ inline Vector4 length_gradient(const ZSpringParameters& z, const Shape& s) {
 
 }  // namespace
 
-std::optional<ZSpringGeometry> zspring_geometry(const ZSpringParameters& z, double alpha, double beta,
-                                                double gap) {
-  const std::optional<Shape> s = shape(z, alpha, beta, gap);
-  if (!s) return std::nullopt;
-  return ZSpringGeometry{s->length, z.k * (s->length - z.l0), length_gradient(z, *s)};
-}
-
 std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta,
                                                 double gap) {
   std::optional<ElementResponse> result;
   const std::optional<Shape> known = shape(z, alpha, beta, gap);
   if (!known) return result;
   const Shape& s = *known;
-  const double T = z.k * (s.length - z.l0);
-  const Vector4 n = length_gradient(z, s);
-  const Vector4 p(-s.ex, z.L1 * (s.ey * s.sin_a - s.ex * s.cos_a), z.L2 * (s.ey * s.sin_b - s.ex * s.cos_b), s.ex);
   ElementResponse& out = result.emplace();
+  const double T = out.tension = z.k * (s.length - z.l0);
+  const Vector4& n = out.gradient = length_gradient(z, s);
+  const Vector4 p(-s.ex, z.L1 * (s.ey * s.sin_a - s.ex * s.cos_a), z.L2 * (s.ey * s.sin_b - s.ex * s.cos_b), s.ex);
+  out.length = s.length;
   out.energy = 0.5 * z.k * (s.length - z.l0) * (s.length - z.l0);
   out.force = T * n;
   out.tangent.noalias() = (z.k * n) * n.transpose();

@@ -28,12 +28,8 @@ struct ElementResponse {
   double energy;
   Vector4 force;
   Matrix4 tangent;
-};
-
-struct ZSpringGeometry {
-  double length;     // m
-  double tension;    // N
-  Vector4 gradient;  // d length / d(u1, alpha, beta, u2)
+  double length, tension;  // m, N, of the spring
+  Vector4 gradient;        // of its length
 };
 
 // Rods and spring collinear at `theta` under the load that the head carries, T > 0.
@@ -48,7 +44,6 @@ struct StaticState {
 
 // `gap` is the absolute vertical distance u2 - u1, m. Below `shortest_length` the direction of the spring,
 // and with it the force, is not defined: there is no answer.
-std::optional<ZSpringGeometry> zspring_geometry(const ZSpringParameters& z, double alpha, double beta, double gap);
 std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta, double gap);
 
 constexpr double shortest_length = 1e-9;  // m
