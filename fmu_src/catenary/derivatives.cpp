@@ -1,4 +1,5 @@
 // Derivatives of the outputs, with respect to time and to the inputs.
+#include <algorithm>
 #include <utility>
 
 #include "simulation.hpp"

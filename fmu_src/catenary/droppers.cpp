@@ -1,5 +1,6 @@
 #include "droppers.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace zspring::catenary {

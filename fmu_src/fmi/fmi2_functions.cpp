@@ -124,7 +124,7 @@ void fmi2FreeInstance(fmi2Component c) { delete static_cast<Instance*>(c); }
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean /*tolerance_defined*/, fmi2Real /*tolerance*/,
                                fmi2Real start, fmi2Boolean has_stop, fmi2Real stop) {
   return guarded(c, Instantiated, "fmi2SetupExperiment",
-                 [&](Instance& i) { i.setup_experiment({start, has_stop ? stop : 0, has_stop != fmi2False}); });
+                 [&](Instance& i) { i.setup_experiment(start, has_stop != fmi2False, stop); });
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {

@@ -48,20 +48,21 @@ void Instance::reset() {
   inputs_ = {};
   for (const Variable& v : variables)
     if (v.is_input()) v.signal(inputs_).value = v.start;
-  experiment_ = {};
+  has_stop_ = false;
+  stop_ = 0;
   time_ = 0;
   stepped_ = false;
   forget_discard();
   simulation_.reset();
 }
 
-void Instance::setup_experiment(const Experiment& e) {
-  if (!std::isfinite(e.start)) refuse("startTime = %g s: must be a finite number", e.start);
-  if (e.has_stop && !(e.stop >= e.start))
-    refuse("stopTime = %.10g s: must not be before startTime = %.10g s", e.stop, e.start);
-  experiment_ = e;
-  if (std::isinf(e.stop)) experiment_.has_stop = false, experiment_.stop = 0;
-  time_ = e.start;
+void Instance::setup_experiment(double start, bool has_stop, double stop) {
+  if (!std::isfinite(start)) refuse("startTime = %g s: must be a finite number", start);
+  if (has_stop && !(stop >= start))
+    refuse("stopTime = %.10g s: must not be before startTime = %.10g s", stop, start);
+  has_stop_ = has_stop && !std::isinf(stop);
+  stop_ = has_stop_ ? stop : 0;
+  time_ = start;
 }
 
 void Instance::enter_initialization() { phase = Initialization; }
@@ -177,9 +178,8 @@ fmi2Status Instance::step(double from, double length) {
   if (!(std::abs(from - time_) <= rounding))
     refuse("currentCommunicationPoint = %.17g s: must be %.17g s, where the last step ended", from, time_);
   const double to = from + length;
-  if (experiment_.has_stop && to > experiment_.stop + rounding)
-    refuse("communicationStepSize = %.10g s: leads to %.17g s, past stopTime = %.17g s", length, to,
-           experiment_.stop);
+  if (has_stop_ && to > stop_ + rounding)
+    refuse("communicationStepSize = %.10g s: leads to %.17g s, past stopTime = %.17g s", length, to, stop_);
 
   Simulation& s = *simulation_;
   if (!stepped_ && log.enabled(Category::logStatusWarning))

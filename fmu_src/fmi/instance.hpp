@@ -5,7 +5,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "log.hpp"
 #include "state_machine.hpp"
@@ -16,12 +15,6 @@ namespace zspring::fmi {
 // Throws Refusal where the variable cannot have this value.
 void check_value(const Variable& v, double x);
 
-struct Experiment {
-  double start = 0;
-  double stop = 0;
-  bool has_stop = false;
-};
-
 class Instance {
  public:
   Instance(const fmi2CallbackFunctions& functions, const char* name, bool debug) : log(functions, name, debug) {
@@ -30,7 +23,7 @@ class Instance {
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
-  void setup_experiment(const Experiment& e);
+  void setup_experiment(double start, bool has_stop, double stop);
   void enter_initialization();
   void exit_initialization();
   void terminate();
@@ -72,7 +65,8 @@ class Instance {
 
   Parameters parameters_;
   Inputs inputs_;
-  Experiment experiment_;
+  bool has_stop_;
+  double stop_;  // s, 0 where there is none
   double time_;
   bool stepped_;
   bool wants_to_end_;

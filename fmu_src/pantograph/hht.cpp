@@ -1,6 +1,5 @@
 #include "hht.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace zspring {

@@ -1,5 +1,7 @@
 #include "imposed_motion.hpp"
 
+#include <algorithm>
+
 namespace zspring {
 
 MotionState MotionState::variation() const {
