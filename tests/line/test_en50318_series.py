@@ -113,7 +113,7 @@ GAP = np.where(TIME >= 1.0, TIME + 0.5, TIME)
         ({"time [s]": TIME[:101], "contact_force [N]": FORCE[:101]}, "0.2 s is too short for 20 Hz"),
         ({"time [s]": TIME[:1], "contact_force [N]": FORCE[:1]}, "time does not increase"),
         ({"time [s]": 10 * TIME, "contact_force [N]": FORCE}, "50 samples/s: at least 100 are needed"),
-        ({"time [s]": TIME, "contact_force": FORCE}, "column 'contact force' needs its unit, as in 'contact force .N.'"),
+        ({"time [s]": TIME, "contact_force": FORCE}, "'contact force' needs its unit, as in 'contact force .N.'"),
         ({"time": TIME, "contact_force [N]": FORCE}, "column 'time' needs its unit, as in 'time .s.'"),
         ({"time [s]": TIME, "contact_force [lbf]": FORCE}, "column 'contact_force': unit .lbf.: must be one of N, kN"),
         ({"time [s]": TIME, "force [N]": FORCE}, "no column 'contact force .N.' .there are: time"),

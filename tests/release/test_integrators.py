@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from zspring_research.integrators.record import Record
 
 import zspring.fmu
 from harness import fitted_order
@@ -19,7 +20,6 @@ from zspring_research.integrators.measure import STABILITY, Laboratory, Result, 
 from zspring_research.integrators.model import UPPER_FRAME, bench_model, contact_force, dynamics, head_motion
 from zspring_research.integrators.peers import ADAPTIVE, rk4, solve
 from zspring_research.integrators.problem import Problem
-from zspring_research.integrators.record import Record
 from zspring_research.integrators.report import cheapest
 from zspring_research.integrators.run import _measure
 
