@@ -20,6 +20,7 @@ from zspring.identify.settings import Free, Search, Settings, Static
 T = np.arange(5.0)
 LINE = np.column_stack([np.ones(5), T])
 FREQUENCY = np.array([1.0, 2.0, 4.0])
+MASSES = Free("m1", 5, 0, 10), Free("m2", 5, 0, 10)
 MEASURED = np.array([2e-4 - 1e-4j, 1e-4 - 3e-4j, -5e-5 - 2e-4j])
 
 
@@ -39,7 +40,7 @@ class Exponential:
         return self
 
 
-def problem_of(free=(Free("m1", 5, 0, 10), Free("m2", 5, 0, 10)), static: StaticTest | None = None, **fields) -> Problem:
+def problem_of(free=MASSES, static: StaticTest | None = None, **fields) -> Problem:
     settings = Settings(
         path=Path("fit.toml"), model="zspring", sources=(), free=tuple(free), fixed={}, tied={}, search=Search(0)
     )
@@ -85,7 +86,9 @@ def test_a_parameter_that_is_held_counts_as_known():
     """The slope alone, from the origin: s^2 = RSS / (5 - 1), var(b) = s^2 / 30."""
     error, correlation = statistics(problem_of(), np.array([1.0, 0.5]), LINE, np.array([True, False]), 4.0)
     assert np.isnan(error[0]) and error[1] == pytest.approx(10 * np.sqrt(2 / 30), rel=1e-12)
-    assert np.isnan(correlation[0]).all() and np.isnan(correlation[:, 0]).all() and correlation[1, 1] == pytest.approx(1)
+    assert (
+        np.isnan(correlation[0]).all() and np.isnan(correlation[:, 0]).all() and correlation[1, 1] == pytest.approx(1)
+    )
     error, correlation = statistics(problem_of(), np.array([1.0, 0.0]), LINE, np.array([True, True]), 4.0)
     assert np.isnan(error).all() and np.isnan(correlation).all()
 
@@ -261,7 +264,9 @@ def test_the_residual_table_leaves_out_what_was_not_computed():
 # Bounds
 
 
-@pytest.mark.parametrize("low, high, is_logarithmic", [(1, 10, False), (1, 10.1, True), (0, 100, False), (-1, 90, False)])
+@pytest.mark.parametrize(
+    "low, high, is_logarithmic", [(1, 10, False), (1, 10.1, True), (0, 100, False), (-1, 90, False)]
+)
 def test_wide_positive_ranges_are_searched_on_a_logarithmic_scale(low, high, is_logarithmic):
     free = Free("m1", low, low, high)
     assert free.is_logarithmic is is_logarithmic

@@ -184,7 +184,10 @@ def test_every_label_of_a_universal_file_counts_above_and_below_the_line(tmp_pat
     """Motion over force and force over motion, with the number that the file has in units of its labels."""
     moved = H * (2j * np.pi * FREQUENCY) ** {8: 0, 11: 1, 12: 2}[motion] / MOTION_LABELS[motion][label]
     value = moved * FORCE_LABELS[force_label]
-    for number, axes in ((value, (motion, label, force, force_label)), (1 / value, (force, force_label, motion, label))):
+    for number, axes in (
+        (value, (motion, label, force, force_label)),
+        (1 / value, (force, force_label, motion, label)),
+    ):
         path = universal_file(tmp_path / "a.uff", number, **dict(zip(UNITS, axes)))
         (curve,) = read_curves(Source(path))
         np.testing.assert_allclose(curve.H, H, rtol=1e-6)
@@ -211,7 +214,10 @@ def test_other_data_sets_and_the_static_line_of_a_universal_file_are_passed_over
     """A coherence, a transfer between two points, and two responses, the first of which begins at 0 Hz."""
     path = universal_file(tmp_path / "a.uff", np.ones(4), func_type=6)
     with_static = universal_file(tmp_path / "b.uff", np.concatenate([[5.0], H]), x=np.concatenate([[0.0], FREQUENCY]))
-    others = [universal_file(tmp_path / "c.uff", H, rsp_node=2), universal_file(tmp_path / "d.uff", H, z_axis_value=4.0)]
+    others = [
+        universal_file(tmp_path / "c.uff", H, rsp_node=2),
+        universal_file(tmp_path / "d.uff", H, z_axis_value=4.0),
+    ]
     path.write_text("".join(each.read_text() for each in (path, with_static, *others)))
     small, large = read_curves(Source(path))
     for curve, acceleration in ((small, 0.5), (large, 4.0)):
