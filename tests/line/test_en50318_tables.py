@@ -74,6 +74,13 @@ def test_the_deviations_share_of_the_mean_is_judged_at_three_tenths(deviation, s
     assert texts(row) == [f"{deviation / 100:.3f}", "", said] and row[-1].look == {"inside": GOOD, "outside": BAD}[said]
 
 
+@pytest.mark.parametrize("mean", [0.0, -100.0])
+def test_a_force_that_does_not_press_at_all_has_no_good_share(mean):
+    found = {**FOUND, "mean_force": mean}
+    rows = rows_of(report.case_table(found, judge(found, {"mean_force": (90, 110)}), 250.0, "x"))
+    assert texts(rows["standard deviation / mean force, at most 0.3"]) == ["inf", "", "outside"]
+
+
 def test_a_table_without_ranges_judges_nothing_and_has_every_figure():
     """The target mean force of AC lines is 0.00097 v^2 + 70 N, 130.6 N at 250 km/h."""
     table = report.case_table(FOUND, [], 250.0, "x")
