@@ -79,8 +79,11 @@ def test_amplitudes_become_curves_and_displacements_become_accelerations(tmp_pat
     np.testing.assert_allclose(small.acceleration, 2e-3 * OMEGA**2)
     np.testing.assert_allclose(large.acceleration, 5e-3 * OMEGA**2)
     assert (small.label, large.label) == ("2 mm", "5 mm")
-    (kept, _) = in_band([small, large], (2.0, 6.0))
-    np.testing.assert_array_equal(kept.frequency, [2.5, 5.0])
+    for band in (2.0, 6.0), (2.5, 5.0):  # its ends belong to it
+        (kept, _) = in_band([small, large], band)
+        np.testing.assert_array_equal(kept.frequency, [2.5, 5.0])
+        np.testing.assert_array_equal(kept.H, H[1:3])
+        np.testing.assert_allclose(kept.acceleration, 2e-3 * OMEGA[1:3] ** 2)
     with pytest.raises(ZSpringError, match="band 6 to 7 Hz: no data with 2 mm"):
         in_band([small], (6.0, 7.0))
 
@@ -92,6 +95,28 @@ def test_a_contact_force_turns_the_sign_and_a_wrong_one_is_noticed(tmp_path):
     np.testing.assert_allclose(right.H, H, rtol=1e-12)
     assert "contact" in sign_warning([wrong])
     assert sign_warning([right]) is None
+
+
+def test_a_sign_is_doubted_where_most_points_give_energy_out(tmp_path):
+    """Two of four may be noise, three of four are not; counted over all curves."""
+    curves = {}
+    for wrong in range(5):
+        imaginary = np.where(np.arange(4) < wrong, 1, -1) * np.abs(H.imag)
+        path = write(tmp_path / "a.csv", "frequency [Hz],real [m/N],imaginary [m/N]", FREQUENCY, H.real, imaginary)
+        (curves[wrong],) = read_curves(Source(path, amplitude=1.0))
+    assert [sign_warning([curves[n]]) is None for n in range(5)] == [True, True, True, False, False]
+    assert sign_warning([curves[4], curves[0]]) is None
+    assert "at 7 of 8 points" in sign_warning([curves[4], curves[3]])
+
+
+@pytest.mark.parametrize("status, kept", [("settled", 2), ("not settled", 2), ("left out", 1), ("failed: x", 1)])
+def test_points_that_a_file_marks_as_not_measured_are_passed_over(tmp_path, status, kept):
+    """Their cells may be empty."""
+    cells = ",," if kept == 1 else ",1e-3,-1e-4"
+    lines = "frequency [Hz],amplitude [m/s2],status,H_re [m/N],H_im [m/N]", f"1,0.5,{status}{cells}"
+    (tmp_path / "frf.csv").write_text("\n".join([*lines, "2,0.5,settled,2e-3,-1e-4\n"]))
+    (curve,) = read_curves(Source(tmp_path / "frf.csv"))
+    assert curve.frequency.size == kept and curve.H[-1] == pytest.approx(2e-3 - 1e-4j)
 
 
 def test_the_fixture_behind_the_load_cell_is_taken_off(tmp_path):

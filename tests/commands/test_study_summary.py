@@ -10,9 +10,11 @@ import pytest
 
 from commands import table, zspring
 from zspring.bench.measure import FrfSettings
+from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
 from zspring.study.evaluations import FrfQuantity, StaticQuantity, column
 from zspring.study.plot import envelope_figure
+from zspring.study.record import StudyRecord
 from zspring.study.report import (
     PERCENTILES,
     Envelope,
@@ -166,6 +168,30 @@ def test_a_study_all_of_whose_cases_fail_is_a_failure(tmp_path):
     assert "all 2 cases failed" in err
     for row in table(tmp_path / "out/study.csv"):
         assert row["status"].startswith("failed: 4 m/s2, 4 Hz: ") and row["resonance 4 m/s2 [Hz]"] == ""
+
+
+def test_lost_cases_are_run_again_and_failed_ones_are_not(tmp_path):
+    """Rows as they come in, and as the same record is opened again; a row that was cut off is missing, too."""
+    path, cases = tmp_path / "study.csv", [{"m1 [kg]": str(n)} for n in range(5)]
+
+    def opened() -> StudyRecord:
+        return StudyRecord(path, {"date": "now", "design": "list"}, cases, ["y"])
+
+    record = opened()
+    assert record.missing == [0, 1, 2, 3, 4]
+    with record:
+        for number, status in ((3, "lost"), (1, "ok"), (0, "failed: so\n and so")):
+            record.append(number, {"status": status, "seconds": 0.5, "y": 2.5 if status == "ok" else float("nan")})
+    assert record.missing == [2, 3, 4]
+    assert record.failed == [(0, "failed: so and so"), (3, "lost")]
+    with path.open("a") as file:
+        file.write("2,ok,0.5,2")
+    again = opened()
+    assert again.missing == [2, 3, 4] and again.rows[1]["y"] == "2.5" and again.rows[0]["y"] == ""
+    again.finish()
+    assert [row["case"] for row in table(path)] == ["0", "1", "3"]
+    with pytest.raises(ZSpringError, match=r"is of another study \(design: list, now grid"):
+        StudyRecord(path, {"date": "later", "design": "grid"}, cases, ["y"])
 
 
 @pytest.fixture(scope="module")
