@@ -1,13 +1,15 @@
 """How many small faults the tests notice: planted one at a time, drawn at random, in a copy of the clone.
 
-For each fault the tests that name the file's module run first, then all others, until one fails. Figures are left out,
-as no test judges how they look. Each fault is a row of a CSV at once, so that after Ctrl-C the same command goes on.
-A fault takes some ten seconds, and as long as all tests where nobody notices it.
+The kinds are the same in Python (by its syntax tree) and in C++ (by its tokens): comparisons, arithmetic and logical
+operators, signs, constants and indices, conditions turned round, arguments swapped, statements left out. For each fault
+the tests that name the file's module run first, then all others, until one fails. Figures are left out, as no test
+judges how they look. A fault that nobody notices takes as long as all tests; many such change nothing that matters.
 """
 
 from __future__ import annotations
 
 import argparse
+import ast
 import csv
 import os
 import random
@@ -17,27 +19,146 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
+from typing import NamedTuple
 
 from tqdm import tqdm
 
-from mutations import Mutation, cpp_mutations, python_mutations
 from paths import ROOT
 from zspring.fmu import CATENARY, PANTOGRAPH, installed_fmu
 
-SOURCES = ("scripts/zspring/*.py", "fmu_src/*/*.cpp", "fmu_src/*/*.hpp")
 LEFT_OUT = ("*/plot.py", "*/figures.py", "*/__init__.py", "*/__main__.py", "fmu_src/zig/*")
-COLUMNS = ["number", "file", "line", "fault", "result", "noticed by"]
-KILLED, SURVIVED, NOT_VIABLE = "killed", "survived", "not viable"
+COLUMNS = ["file", "line", "fault", "result", "noticed by"]
+KILLED, SURVIVED, NOT_VIABLE = "noticed", "NOT NOTICED", "not viable"
 LONGEST = 1200  # s, of a run of tests; a fault that makes it endless is noticed by that
-NOT_THESE = "not no_memory_error"  # builds everything anew, with sanitizers
+NOT_THESE = "not no_memory_error"  # which builds everything anew, with sanitizers
 # Where the tests of a C++ file are; those of a Python file name its module or its command.
-TESTS_OF = {
-    "fmu_src/pantograph": ("core", "fmi"),
-    "fmu_src/catenary": ("line", "fmi"),
-    "fmu_src": ("fmi", "core", "line"),
+TESTS_OF = {"fmu_src/pantograph": ["core", "fmi"], "fmu_src/catenary": ["line", "fmi"], "fmu_src": ["fmi", "core"]}
+
+COMPARE = {"Lt": "<= >", "LtE": "< >=", "Gt": ">= <", "GtE": "> <=", "Eq": "!=", "NotEq": "=="}
+COMPARE |= {"Is": "is-not", "IsNot": "is", "In": "not-in", "NotIn": "in"}
+ARITHMETIC = {"Add": "-", "Sub": "+", "Mult": "/", "Div": "*", "Pow": "*", "FloorDiv": "*", "Mod": "*"}
+TOKENS = {" < ": "<= >", " > ": ">= <", " <= ": "< >=", " >= ": "> <=", " == ": "!=", " != ": "=="}
+TOKENS |= {" && ": "||", " || ": "&&", " + ": "-", " - ": "+", " * ": "/", " / ": "*", " += ": "-=", " -= ": "+="}
+PATTERNS = {
+    r"(?<=[(=,] )-(?=[\w(])|(?<=\()-(?=[\w(])|(?<=return )-|!(?=[\w(])": "",
+    r"\btrue\b": "false",
+    r"\bfalse\b": "true",
+    r"(?<![\w.])\d+(?![\w.])": r"(\g<0> + 1)",
+    r"(?<![\w.])\d+(?:\.\d*|(?=e))(?:e[-+]?\d+)?(?![\w.])": r"(2 * \g<0>)",
+    r"(?<=\bif )\((?!constexpr).+\)(?= return| throw| continue| break| \w[\w.]* [-+]?= )": r"(!\g<0>)",
+    r"(?m)^ +(?!(?:return|throw|const|using|auto|else|case) )[\w.:>\[\]-]+(?:\(.*\)| [-+*/]?= .*);$": ";",
 }
+
+
+class Fault(NamedTuple):
+    """In a file the text from one place to another is replaced."""
+
+    file: str
+    begin: int
+    end: int
+    new: str
+
+    @property
+    def source(self) -> str:
+        return (ROOT / self.file).read_text("utf-8")
+
+    @property
+    def line(self) -> int:
+        return self.source.count("\n", 0, self.begin) + 1
+
+    def __str__(self) -> str:
+        source = self.source
+        first, last = source.rfind("\n", 0, self.begin) + 1, source.find("\n", self.end)
+        before, after = source[first : self.begin], source[self.end : last]
+        return " ".join(f"{before}[{source[self.begin : self.end]} -> {self.new}]{after}".split())[:240]
+
+
+def python_faults(source: str) -> Iterator[tuple[int, int, str]]:
+    """Begin, end and replacement of each fault."""
+    tree, starts = ast.parse(source), [0]
+    for line in source.encode().splitlines(keepends=True):
+        starts.append(starts[-1] + len(line))
+
+    def place(line: int, column: int) -> int:
+        """In characters: the syntax tree counts bytes."""
+        return len(source.encode()[: starts[line - 1] + column].decode())
+
+    formats = [node for node in ast.walk(tree) if isinstance(node, ast.JoinedStr)]
+    ignored = {id(child) for node in formats for child in ast.walk(node)}  # before Python 3.12 they have no places
+    ignored |= {
+        id(child) for node in ast.walk(tree) for child in ast.walk(getattr(node, "annotation", None) or ast.Pass())
+    }
+    for node in ast.walk(tree):
+        if id(node) not in ignored:
+            for target, new in python_variants(node):
+                yield place(target.lineno, target.col_offset), place(target.end_lineno, target.end_col_offset), new
+
+
+def python_variants(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """What to replace by what, for each fault that fits the node."""
+    kind = type(getattr(node, "op", None)).__name__
+    match node:
+        case ast.Compare():
+            for other in COMPARE[type(node.ops[0]).__name__].split():
+                rest = ast.unparse(node)[len(ast.unparse(ast.Compare(node.left, node.ops[:1], node.comparators[:1]))) :]
+                first = f"{ast.unparse(node.left)} {other.replace('-', ' ')} {ast.unparse(node.comparators[0])}"
+                yield node, f"({first}{rest})"
+        case ast.BinOp() if kind in ARITHMETIC and not any(map(is_text, (node.left, node.right))):
+            yield node, f"(({ast.unparse(node.left)}) {ARITHMETIC[kind]} ({ast.unparse(node.right)}))"
+        case ast.AugAssign() if kind in ARITHMETIC:
+            yield node, f"{ast.unparse(node.target)} {ARITHMETIC[kind]}= {ast.unparse(node.value)}"
+            yield node, "pass"
+        case ast.UnaryOp() if kind in ("USub", "Not"):
+            yield node, f"({ast.unparse(node.operand)})"
+        case ast.BoolOp():
+            yield node, f"({(' or ' if kind == 'And' else ' and ').join(f'({ast.unparse(v)})' for v in node.values)})"
+        case ast.Constant(value=bool()):
+            yield node, str(not node.value)
+        case ast.Constant(value=int()):
+            yield node, str(node.value + 1)
+            yield node, f"({node.value - 1})"
+        case ast.Constant(value=float()):
+            yield node, repr(2 * node.value or 1.0)
+        case ast.IfExp() | ast.If() | ast.While():
+            yield node.test, f"(not ({ast.unparse(node.test)}))"
+        case ast.Call(args=[first, second, *_]) if not isinstance(first, ast.Starred) and not isinstance(
+            second, ast.Starred
+        ):
+            swapped = ast.Call(node.func, [second, first, *node.args[2:]], node.keywords)
+            yield node, ast.unparse(ast.fix_missing_locations(swapped))
+        case ast.Expr(value=ast.Call()) | ast.Raise():
+            yield node, "pass"
+        case ast.Return() if node.value is not None:
+            yield node, "return None"
+
+
+def is_text(node: ast.AST) -> bool:
+    return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
+
+
+def cpp_faults(source: str) -> Iterator[tuple[int, int, str]]:
+    """Begin, end and replacement of each fault; comments, texts and directives are passed over."""
+    passed_over = r'//.*|"(?:\\.|[^"\\\n])*"|(?m:^[ ]*(?:#|template|static_assert).*)'
+    code = re.sub(passed_over, lambda found: "\v" * len(found[0]), source)
+    for token, others in TOKENS.items():
+        for found in re.finditer(re.escape(token), code):
+            yield from ((found.start() + 1, found.end() - 1, other) for other in others.split())
+    for pattern, replacement in PATTERNS.items():
+        yield from ((*found.span(), found.expand(replacement)) for found in re.finditer(pattern, code))
+
+
+def drawn(only: str, count: int, seed: int) -> list[Fault]:
+    """Faults drawn from all those of the files that fit the pattern, each as likely."""
+    faults = []
+    for path in sorted([*ROOT.glob("scripts/zspring/**/*.py"), *ROOT.glob("fmu_src/*/**/*.?pp")]):
+        name = path.relative_to(ROOT).as_posix()
+        if fnmatch(name, only) and not any(fnmatch(name, pattern) for pattern in LEFT_OUT):
+            places = (python_faults if name.endswith(".py") else cpp_faults)(path.read_text("utf-8"))
+            faults += [Fault(name, *place) for place in places]
+    return random.Random(seed).sample(faults, min(count, len(faults)))
 
 
 class Clone:
@@ -50,38 +171,33 @@ class Clone:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, folder / name)
         shutil.copytree(ROOT / "resources", self.package / "resources", dirs_exist_ok=True)
-        browser = ROOT / "tests" / "browser" / "node_modules"
-        if browser.exists():
-            os.symlink(browser, folder / "tests" / "browser" / "node_modules")
+        os.symlink(ROOT / "tests" / "browser" / "node_modules", folder / "tests" / "browser" / "node_modules")
         for model in (PANTOGRAPH, CATENARY):
             shutil.copy2(installed_fmu(model), self.package)
-        paths = [folder / "scripts", folder / "scripts" / "research"]
-        self.environment = {
-            **os.environ,
-            "PYTHONPATH": os.pathsep.join(map(str, paths)),
-            "PYTHONDONTWRITEBYTECODE": "1",
-        }
-        self._is_configured = self._is_of_a_fault = False
+        paths = os.pathsep.join(str(folder / name) for name in ("scripts", "scripts/research"))
+        self.environment = {**os.environ, "PYTHONPATH": paths, "PYTHONDONTWRITEBYTECODE": "1"}
+        self._built_from: Fault | None = None
 
-    def built(self) -> bool:
-        """Whether the C++ sources can be compiled; then the FMUs and test programs are of them."""
-        build, cmake = self.folder / "build", [sys.executable, "-m", "cmake"]
-        if not self._is_configured:
-            own = ["-DZSPRING_TESTS=ON", f"-DPython3_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release"]
-            self._run(*cmake, "-S", self.folder, "-B", build, "-G", "Ninja", *own)
-            self._is_configured = True
-        if self._run(*cmake, "--build", build, "--target", "all", "probes").returncode:
-            return False
-        for model in (PANTOGRAPH, CATENARY):
-            shutil.copy2(build / f"{model}.fmu", self.package)
-        self.environment["ZSPRING_PROBES"] = str(build / "bin")
-        return True
+    def judge(self, fault: Fault) -> tuple[str, str]:
+        """Result, and the first test that fails with the fault planted; the file is whole again afterwards."""
+        path, is_cpp = self.folder / fault.file, not fault.file.endswith(".py")
+        if self._built_from and not is_cpp:
+            self._build(None)
+        try:
+            path.write_text(fault.source[: fault.begin] + fault.new + fault.source[fault.end :], "utf-8")
+            if is_cpp and not self._build(fault):
+                return NOT_VIABLE, ""
+            near = self._tests_of(fault.file)
+            failed = (near and self.first_failure(*near)) or self.first_failure()
+            return (KILLED, failed) if failed else (SURVIVED, "")
+        finally:
+            path.write_text(fault.source, "utf-8")
 
     def first_failure(self, *tests: str) -> str | None:
         """The first test that fails of these, or of all; None if none does."""
-        chosen = [*tests, "-n", "0" if tests else "auto", "-k", NOT_THESE]
+        chosen = [*tests, "-n", "0"] if tests else []
         try:
-            done = self._run(sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *chosen)
+            done = self._run("-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-k", NOT_THESE, *chosen)
         except subprocess.TimeoutExpired:
             return "no end"
         if done.returncode in (0, 5):  # 5: no test was chosen
@@ -89,56 +205,34 @@ class Clone:
         found = re.search(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", done.stdout, re.MULTILINE)
         return found[1] if found else (done.stdout.strip().splitlines() or ["nothing ran"])[-1]
 
-    def tests_of(self, file: str) -> list[str]:
-        """Test files for a source file, the closest ones first."""
+    def _build(self, fault: Fault | None) -> bool:
+        """Whether the C++ sources, with this fault in them, can be compiled; then FMUs and probes are of them."""
+        self._built_from, build = fault, self.folder / "build"
+        if not build.exists():
+            own = ["-DZSPRING_TESTS=ON", f"-DPython3_EXECUTABLE={sys.executable}"]
+            self._run("-m", "cmake", "-S", self.folder, "-B", build, "-G", "Ninja", *own)
+        if self._run("-m", "cmake", "--build", build, "--target", "all", "probes").returncode:
+            return False
+        for model in (PANTOGRAPH, CATENARY):
+            shutil.copy2(build / f"{model}.fmu", self.package)
+        self.environment["ZSPRING_PROBES"] = str(build / "bin")
+        return True
+
+    def _tests_of(self, file: str) -> list[str]:
         if file.startswith("fmu_src"):
-            folders = next(names for start, names in TESTS_OF.items() if file.startswith(start))
-            return [f"tests/{name}" for name in folders]
+            return [f"tests/{name}" for name in next(TESTS_OF[start] for start in TESTS_OF if file.startswith(start))]
         module = ".".join(Path(file).with_suffix("").parts[1:])
         package, _, name = module.rpartition(".")
-        words = [
-            rf"\b{re.escape(module)}\b",
-            rf"{re.escape(package)} import .*\b{name}\b",
-            rf'"{package.partition(".")[2]}"',
-        ]
+        command = package.rpartition(".")[2]
+        words = [rf"\b{re.escape(module)}\b", rf"\b{re.escape(package)} import .*\b{name}\b", f'"{command}"']
         texts = {path: path.read_text("utf-8") for path in sorted(self.folder.glob("tests/*/test_*.py"))}
         near = [path for word in words for path, text in texts.items() if re.search(word, text)]
         return [str(path.relative_to(self.folder)) for path in dict.fromkeys(near) if "release" not in path.parts]
 
-    def judge(self, file: str, mutation: Mutation) -> tuple[str, str]:
-        """Result and first test that fails with a fault planted; the file is whole again afterwards."""
-        path = self.folder / file
-        kept, is_cpp = path.read_text("utf-8"), not file.endswith(".py")
-        if self._is_of_a_fault and not is_cpp:
-            self._is_of_a_fault = not self.built()
-        try:
-            path.write_text(mutation.text(), "utf-8")
-            self._is_of_a_fault |= is_cpp
-            if is_cpp and not self.built():
-                return NOT_VIABLE, ""
-            near = self.tests_of(file)
-            failed = (near and self.first_failure(*near)) or self.first_failure()
-            return (KILLED, failed) if failed else (SURVIVED, "")
-        finally:
-            path.write_text(kept, "utf-8")
-
-    def _run(self, *command: object) -> subprocess.CompletedProcess:
-        words = [str(word) for word in command]
-        return subprocess.run(
-            words, cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=LONGEST
-        )
-
-
-def drawn(only: str, count: int, seed: int) -> list[tuple[str, Mutation]]:
-    """Faults drawn from all those of the files that fit the pattern, each as likely."""
-    files = sorted({path for source in SOURCES for path in ROOT.rglob(source.rpartition("/")[2]) if path.is_file()})
-    names = [path.relative_to(ROOT).as_posix() for path in files]
-    names = [n for n in names if any(fnmatch(n, s) for s in SOURCES) and not any(fnmatch(n, x) for x in LEFT_OUT)]
-    faults = []
-    for name in (name for name in names if fnmatch(name, only)):
-        source = (ROOT / name).read_text("utf-8")
-        faults += [(name, m) for m in (python_mutations if name.endswith(".py") else cpp_mutations)(source)]
-    return random.Random(seed).sample(faults, min(count, len(faults)))
+    def _run(self, *arguments: object) -> subprocess.CompletedProcess:
+        words = [sys.executable, *map(str, arguments)]
+        own = {"cwd": self.folder, "env": self.environment, "timeout": LONGEST}
+        return subprocess.run(words, capture_output=True, text=True, **own)
 
 
 def main() -> None:
@@ -151,9 +245,8 @@ def main() -> None:
     output = arguments.output or ROOT / "results" / f"mutants-{arguments.seed}.csv"
     faults = drawn(arguments.only, arguments.count, arguments.seed)
     rows = list(csv.DictReader(output.open(encoding="utf-8", newline=""))) if output.exists() else []
-    for row, (file, mutation) in zip(rows, faults):
-        if (row["file"], row["fault"]) != (file, mutation.fault):
-            sys.exit(f"{output} is of other faults or sources: remove it, or give another --output")
+    if any((row["file"], row["fault"]) != (fault.file, str(fault)) for row, fault in zip(rows, faults)):
+        sys.exit(f"{output} is of other faults or sources: remove it, or give another --output")
     output.parent.mkdir(parents=True, exist_ok=True)
     try:
         with tempfile.TemporaryDirectory() as folder, output.open("a", encoding="utf-8", newline="") as file:
@@ -162,18 +255,16 @@ def main() -> None:
                 if failed := clone.first_failure():
                     sys.exit(f"without any fault fails {failed}")
                 writer.writeheader()
-            for number, (name, mutation) in enumerate(tqdm(faults[len(rows) :], unit=" faults"), len(rows)):
-                result = clone.judge(name, mutation)
-                rows.append(dict(zip(COLUMNS, (number, name, mutation.line, mutation.fault, *result))))
+            for fault in tqdm(faults[len(rows) :], total=len(faults), initial=len(rows), unit=" faults"):
+                rows.append(dict(zip(COLUMNS, (fault.file, fault.line, str(fault), *clone.judge(fault)))))
                 writer.writerow(rows[-1])
-                file.flush()
+                file.flush()  # so that the same command goes on after Ctrl-C
     except KeyboardInterrupt:
-        print(f"interrupted: {len(rows)} of {len(faults)} faults are in {output}; the same command goes on")
+        print(f"interrupted after {len(rows)} of {len(faults)} faults; the same command goes on")
     for row in rows:
-        print(f"{row['result']:10s}  {row['file']}:{row['line']}  {row['fault']}  {row['noticed by']}")
+        print(f"{row['result']:11s}  {row['file']}:{row['line']}  {row['fault']}  {row['noticed by']}")
     counts = Counter(row["result"] for row in rows)
-    viable = counts[KILLED] + counts[SURVIVED]
-    print(f"noticed {counts[KILLED]} of {viable}; {counts[NOT_VIABLE]} cannot be compiled; written: {output}")
+    print(f"noticed: {counts[KILLED]} of {counts[KILLED] + counts[SURVIVED]}; written: {output}")
 
 
 if __name__ == "__main__":
