@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -115,6 +116,15 @@ def test_lists_of_numbers_are_sorted_and_ranges_hold_their_ends(text, numbers):
     assert len(Numbers().convert("0.5:20:0.25", None, None)) == 79
 
 
+@pytest.fixture
+def python_interrupts() -> Iterator[None]:
+    """Also where the tests were started in the background, where a shell makes Ctrl-C be ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("python_interrupts")
 def test_the_first_ctrl_c_is_a_wish_and_the_second_an_interruption():
     before = signal.getsignal(signal.SIGINT)
     with stop_on_interrupt() as stop:

@@ -133,7 +133,11 @@ def test_a_sweep_has_the_points_that_the_stroke_allows_in_its_direction():
     """8 m/s2 at 1 Hz is 203 mm; 0.2 m/s2 just 5.07 mm."""
     settings = FrfSettings((0.2, 8.0), (1.0, 2.0, 3.0), stroke=0.0507)
     assert [(s.amplitude, s.frequencies) for s in sweeps(settings)] == [(0.2, (1, 2, 3)), (8, (2, 3))]
-    assert [(p.amplitude, p.frequency, p.status) for p in left_out(settings)] == [(8, 1, "left out")]
+    (missing,) = left_out(settings)
+    assert (missing.amplitude, missing.frequency, missing.status) == (8, 1, "left out")
+    assert np.isnan(missing.H) and np.isnan(missing.change)
+    counts = missing.periods, missing.steps, missing.iterations, missing.refinements, missing.iterations_max
+    assert counts == (0, 0, 0, 0, 0)
     assert [s.frequencies for s in sweeps(replace(settings, direction="down"))] == [(3, 2, 1), (3, 2)]
     rest = sweeps(replace(settings, direction="rest"))
     assert [(s.amplitude, *s.frequencies) for s in rest] == [(0.2, 1), (0.2, 2), (0.2, 3), (8, 2), (8, 3)]
