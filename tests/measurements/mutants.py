@@ -37,8 +37,8 @@ NOT_THESE = "not no_memory_error"  # which builds everything anew, with sanitize
 # Where the tests of a C++ file are; those of a Python file name its module or its command.
 TESTS_OF = {"fmu_src/pantograph": ["core", "fmi"], "fmu_src/catenary": ["line", "fmi"], "fmu_src": ["fmi", "core"]}
 
-COMPARE = {"Lt": "<= >", "LtE": "< >=", "Gt": ">= <", "GtE": "> <=", "Eq": "!=", "NotEq": "=="}
-COMPARE |= {"Is": "is-not", "IsNot": "is", "In": "not-in", "NotIn": "in"}
+COMPARE = {"Lt": "LtE Gt", "LtE": "Lt GtE", "Gt": "GtE Lt", "GtE": "Gt LtE", "Eq": "NotEq", "NotEq": "Eq"}
+COMPARE |= {"Is": "IsNot", "IsNot": "Is", "In": "NotIn", "NotIn": "In"}
 ARITHMETIC = {"Add": "-", "Sub": "+", "Mult": "/", "Div": "*", "Pow": "*", "FloorDiv": "*", "Mod": "*"}
 TOKENS = {" < ": "<= >", " > ": ">= <", " <= ": "< >=", " >= ": "> <=", " == ": "!=", " != ": "=="}
 TOKENS |= {" && ": "||", " || ": "&&", " + ": "-", " - ": "+", " * ": "/", " / ": "*", " += ": "-=", " -= ": "+="}
@@ -54,26 +54,27 @@ PATTERNS = {
 
 
 class Fault(NamedTuple):
-    """In a file the text from one place to another is replaced."""
+    """In the text of a file a part is replaced."""
 
     file: str
+    text: str
     begin: int
     end: int
     new: str
 
     @property
-    def source(self) -> str:
-        return (ROOT / self.file).read_text("utf-8")
+    def changed(self) -> str:
+        return self.text[: self.begin] + self.new + self.text[self.end :]
 
     @property
     def line(self) -> int:
-        return self.source.count("\n", 0, self.begin) + 1
+        return self.text.count("\n", 0, self.begin) + 1
 
     def __str__(self) -> str:
-        source = self.source
-        first, last = source.rfind("\n", 0, self.begin) + 1, source.find("\n", self.end)
-        before, after = source[first : self.begin], source[self.end : last]
-        return " ".join(f"{before}[{source[self.begin : self.end]} -> {self.new}]{after}".split())[:240]
+        """The line, or lines, with what is replaced and by what between brackets."""
+        first, last = self.text.rfind("\n", 0, self.begin) + 1, self.text.find("\n", self.end)
+        before, old, after = self.text[first : self.begin], self.text[self.begin : self.end], self.text[self.end : last]
+        return " ".join(f"{before}[{old} -> {self.new}]{after}".split())[:240]
 
 
 def python_faults(source: str) -> Iterator[tuple[int, int, str]]:
@@ -103,10 +104,9 @@ def python_variants(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
     match node:
         case ast.Compare():
             for other in COMPARE[type(node.ops[0]).__name__].split():
-                rest = ast.unparse(node)[len(ast.unparse(ast.Compare(node.left, node.ops[:1], node.comparators[:1]))) :]
-                first = f"{ast.unparse(node.left)} {other.replace('-', ' ')} {ast.unparse(node.comparators[0])}"
-                yield node, f"({first}{rest})"
-        case ast.BinOp() if kind in ARITHMETIC and not any(map(is_text, (node.left, node.right))):
+                ops = [getattr(ast, other)(), *node.ops[1:]]
+                yield node, f"({ast.unparse(ast.Compare(node.left, ops, node.comparators))})"
+        case ast.BinOp() if kind in ARITHMETIC and "/ '" not in ast.unparse(node):  # paths
             yield node, f"(({ast.unparse(node.left)}) {ARITHMETIC[kind]} ({ast.unparse(node.right)}))"
         case ast.AugAssign() if kind in ARITHMETIC:
             yield node, f"{ast.unparse(node.target)} {ARITHMETIC[kind]}= {ast.unparse(node.value)}"
@@ -135,10 +135,6 @@ def python_variants(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
             yield node, "return None"
 
 
-def is_text(node: ast.AST) -> bool:
-    return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
-
-
 def cpp_faults(source: str) -> Iterator[tuple[int, int, str]]:
     """Begin, end and replacement of each fault; comments, texts and directives are passed over."""
     passed_over = r'//.*|"(?:\\.|[^"\\\n])*"|(?m:^[ ]*(?:#|template|static_assert).*)'
@@ -156,8 +152,8 @@ def drawn(only: str, count: int, seed: int) -> list[Fault]:
     for path in sorted([*ROOT.glob("scripts/zspring/**/*.py"), *ROOT.glob("fmu_src/*/**/*.?pp")]):
         name = path.relative_to(ROOT).as_posix()
         if fnmatch(name, only) and not any(fnmatch(name, pattern) for pattern in LEFT_OUT):
-            places = (python_faults if name.endswith(".py") else cpp_faults)(path.read_text("utf-8"))
-            faults += [Fault(name, *place) for place in places]
+            text, places = path.read_text("utf-8"), python_faults if name.endswith(".py") else cpp_faults
+            faults += [Fault(name, text, *place) for place in places(text)]
     return random.Random(seed).sample(faults, min(count, len(faults)))
 
 
@@ -184,14 +180,14 @@ class Clone:
         if self._built_from and not is_cpp:
             self._build(None)
         try:
-            path.write_text(fault.source[: fault.begin] + fault.new + fault.source[fault.end :], "utf-8")
+            path.write_text(fault.changed, "utf-8")
             if is_cpp and not self._build(fault):
                 return NOT_VIABLE, ""
             near = self._tests_of(fault.file)
             failed = (near and self.first_failure(*near)) or self.first_failure()
             return (KILLED, failed) if failed else (SURVIVED, "")
         finally:
-            path.write_text(fault.source, "utf-8")
+            path.write_text(fault.text, "utf-8")
 
     def first_failure(self, *tests: str) -> str | None:
         """The first test that fails of these, or of all; None if none does."""
@@ -221,13 +217,13 @@ class Clone:
     def _tests_of(self, file: str) -> list[str]:
         if file.startswith("fmu_src"):
             return [f"tests/{name}" for name in next(TESTS_OF[start] for start in TESTS_OF if file.startswith(start))]
-        module = ".".join(Path(file).with_suffix("").parts[1:])
-        package, _, name = module.rpartition(".")
-        command = package.rpartition(".")[2]
-        words = [rf"\b{re.escape(module)}\b", rf"\b{re.escape(package)} import .*\b{name}\b", f'"{command}"']
-        texts = {path: path.read_text("utf-8") for path in sorted(self.folder.glob("tests/*/test_*.py"))}
+        *_, package, name = Path(file).with_suffix("").parts
+        words = rf"\b{package}\.{name}\b", rf"\b{package} import .*\b{name}\b", f'"{package}"'
+        texts = {
+            path: path.read_text("utf-8") for path in sorted(self.folder.glob("tests/[!r]*/test_*.py"))
+        }  # no release
         near = [path for word in words for path, text in texts.items() if re.search(word, text)]
-        return [str(path.relative_to(self.folder)) for path in dict.fromkeys(near) if "release" not in path.parts]
+        return [str(path.relative_to(self.folder)) for path in dict.fromkeys(near)]
 
     def _run(self, *arguments: object) -> subprocess.CompletedProcess:
         words = [sys.executable, *map(str, arguments)]
