@@ -25,6 +25,7 @@ import numpy as np
 from ..errors import ZSpringError
 from ..tables import read_table
 
+ROUNDING = 1e-6  # of rate and duration, as times come from files
 UNEVEN = 0.02  # largest relative deviation of a time step: files round their times
 LEAST_RATE = 100.0  # Hz, five samples in a period of 20 Hz
 LEAST_PERIODS = 20  # of 20 Hz in a series, 5 of 5 Hz
@@ -70,12 +71,12 @@ class Series:
                 f"{self.name}: {what}: step of {steps[i]:.6g} s at {self.time[i]:.6g} s, {usual:.6g} s elsewhere; "
                 "samples must be even in time"
             )
-        if 1 / usual < LEAST_RATE:
+        if 1 / usual < LEAST_RATE * (1 - ROUNDING):
             raise ZSpringError(
                 f"{self.name}: {1 / usual:.4g} samples/s: at least {LEAST_RATE:g} are needed for {BAND:g} Hz"
             )
         duration = self.time[-1] - self.time[0]
-        if duration < LEAST_PERIODS / BAND:
+        if duration < LEAST_PERIODS / BAND * (1 - ROUNDING):
             raise ZSpringError(
                 f"{self.name}: {duration:.4g} s is too short for {BAND:g} Hz: at least {LEAST_PERIODS / BAND:g} s "
                 "are needed"
