@@ -58,7 +58,7 @@ def identify(settings_path, example, parameter_set, assignments, output, jobs, s
     with opened(fmu_path) as fmu:
         settings = read_settings(settings_path, fmu, parameter_set, assignments)
         folder = output or Path("results") / f"identify-{settings_path.stem}"
-        run_identification(fmu, settings, folder, suffix, jobs or os.cpu_count() or 1)
+        run_identification(fmu, settings, settings_path, folder, suffix, jobs or os.cpu_count() or 1)
 
 
 def _write_example(folder: Path) -> None:
