@@ -37,6 +37,7 @@ ALLOWED = {
     "greater_than": "a number above {gt:g}",
     "greater_than_equal": "a {number} of at least {ge:g}",
     "int_type": "a whole number",
+    "less_than_equal": "at most {le}",
     "list_type": "tables [[{key}]]",
     "literal_error": "{expected}",
     "model_type": "a table",
@@ -126,13 +127,15 @@ def by_full_name(kind: type[Table] | None = None) -> BeforeValidator:
     """
     own = set(keys_of(kind)) if kind else set()
 
+    def is_value(item: Any) -> bool:
+        return not isinstance(item, Mapping) or bool(own & item.keys()) or (kind is not None and not item)
+
     def flatten(table: Any) -> Any:
         if not isinstance(table, Mapping):
             return table
         flat: dict[str, Any] = {}
         for name, item in table.items():
-            inner = flatten(item) if isinstance(item, Mapping) and item and not own & item.keys() else None
-            flat |= {name: item} if inner is None else {f"{name}.{rest}": value for rest, value in inner.items()}
+            flat |= {name: item} if is_value(item) else {f"{name}.{rest}": x for rest, x in flatten(item).items()}
         return flat
 
     return BeforeValidator(flatten)

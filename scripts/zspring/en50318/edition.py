@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from ..errors import ZSpringError, did_you_mean
 from ..line.mean_force import STANDING, mean_force
@@ -24,8 +24,8 @@ DEVIATION_SHARE = 0.3  # of the mean force: largest standard deviation, as paper
 MOST_SPEED = 600.0  # km/h
 
 
-def _known(figures: dict[str, Any]) -> dict[str, Any]:
-    for name in figures:
+def _known(figures: Any) -> Any:
+    for name in figures if isinstance(figures, Mapping) else ():
         if name not in FIGURES:
             raise ValueError(f"unknown figure {name!r}{did_you_mean(name, FIGURES)}")
     return figures
@@ -46,7 +46,7 @@ class Case(Table):
     last_span: int = Field(ge=1, description="that is evaluated")
     given_force: Positive | None = Field(None, alias="static_force", description="N")
     supply: Supply = Field("", description="whose mean force by speed is the static force")
-    ranges: Annotated[dict[str, Range], AfterValidator(_known)] = Field({}, description="in the units of FIGURES")
+    ranges: Annotated[dict[str, Range], BeforeValidator(_known)] = Field({}, description="in the units of FIGURES")
 
     @property
     def static_force(self) -> float:
@@ -72,7 +72,7 @@ class Edition(Table):
     name: str = Field(alias="edition")
     source: str
     cases: list[Case] = Field([], alias="case")
-    agreement: Annotated[dict[str, Positive], AfterValidator(_known)] = Field(
+    agreement: Annotated[dict[str, Positive], BeforeValidator(_known)] = Field(
         {}, description="largest difference of simulation and line test in %, by name of FIGURES"
     )
 

@@ -114,7 +114,7 @@ class _File(Table):
     samples: int = Field(0, ge=1, description="of sampled designs")
     seed: int = Field(1, ge=0, description="of sampled designs")
     vary: Annotated[dict[str, RangeOrValues], by_full_name(Range)] = Field({}, min_length=1, validate_default=True)
-    common: Annotated[dict[str, Any], by_full_name(Range)] = Field({}, alias="set")
+    common: Annotated[dict[str, Any], by_full_name()] = Field({}, alias="set")
     frf: _Frf | None = None
     static: _Static | None = None
 
@@ -181,10 +181,10 @@ def _varied(variables: Variables, name: str, given: Range | list, design: str) -
     """A parameter of [vary]: a range where the design samples it, otherwise values."""
     is_sampled, is_real = design in SAMPLED, variables.parameter(name).type == "Real"
     if isinstance(given, list):
-        values = tuple(_value(variables, name, item) for item in given)
         if is_sampled:
             needed = "a range { from = ..., to = ... }" if is_real else "design grid or list, as it is no real number"
             raise ZSpringError(f"{name} = {given!r}: needs {needed}")
+        values = tuple(_value(variables, name, item) for item in given)
         if design == "grid" and len(set(values)) < len(values):
             raise ZSpringError(f"{name} = {given!r}: needs different values")
         return values
