@@ -397,6 +397,7 @@ def test_a_case_that_kills_workers_is_given_up_and_no_other(own_fmu):
         (("count = 4", "count = 4, scal = 1"), ["[vary] zspring.Mf: unknown key 'scal'; did you mean scale"]),
         (("from = 0.1", "from = false"), ["[vary] zspring.Mf.from = False: must be a number"]),
         (("to = 0.4", "to = inf"), ["[vary] zspring.Mf.to = inf: must be a finite number"]),
+        (("count = 4", "count = 1000000000000"), ["[vary] zspring.Mf.count", "at most 1000000"]),
         (("count = 4", "count = 1"), ["[vary] zspring.Mf.count = 1: must be a whole number of at least 2"]),
         (("[12500, 13500]", "12500"), ["[vary] zspring.k = 12500: needs a range", "or a list"]),
         (("[12500, 13500]", "[true]"), ["[vary] zspring.k = 'True': must be a number"]),

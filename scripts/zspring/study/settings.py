@@ -19,6 +19,7 @@ from ..variables import Value, Variables, text
 from .evaluations import FrfQuantity, Quantity, StaticQuantity
 
 SAMPLED = ("latin-hypercube", "sobol")
+MOST_CASES = 1_000_000
 
 
 class Range(Table):
@@ -27,7 +28,7 @@ class Range(Table):
     low: float = Field(alias="from")
     high: float = Field(alias="to")
     scale: Literal["linear", "log"] = "linear"
-    count: int | None = Field(None, ge=2, description="of values, where the design does not sample the range")
+    count: int | None = Field(None, ge=2, le=MOST_CASES, description="of values, in grid and list")
 
     @model_validator(mode="after")
     def _in_order(self) -> Range:
