@@ -1,4 +1,4 @@
-"""Fixtures: the FMUs of the installed package, each extracted once, and instances freed after each test."""
+"""Fixtures: the FMUs of the installed package, each extracted once; instances and processes end with each test."""
 
 from __future__ import annotations
 
@@ -8,9 +8,17 @@ from pathlib import Path
 import pytest
 from fmpy import extract
 
+from commands import end_all
 from harness import Fmu, Instance, Pantograph
 from models import MODELS, Model
 from zspring.fmu import CATENARY, PANTOGRAPH, installed_fmu
+
+
+@pytest.fixture(autouse=True)
+def no_process_is_left() -> Iterator[None]:
+    """A test that fails in the middle leaves nothing running."""
+    yield
+    end_all()
 
 
 @pytest.fixture(scope="session")

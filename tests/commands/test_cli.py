@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import signal
 import time
+import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from commands import PNG, head, receptances, start, table, zspring
 from harness import bench_point
+from linear import PUBLISHED, LinearPantograph
 from zspring.errors import ZSpringError
 from zspring.options import opened
 
@@ -182,6 +185,66 @@ def test_simulate_gives_what_the_fmu_gives(pantograph, tmp_path):
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-15)
 
 
+@pytest.mark.parametrize(
+    "stop, step, steps", [("0.07", "0.01", 7), ("0.3", "0.1", 3), ("0.075", "0.01", 8), ("0.004", "0.01", 1)]
+)
+def test_simulate_ends_at_the_stop_with_no_step_of_no_length(tmp_path, stop, step, steps):
+    """0.07 / 0.01 is a little more than 7 in binary numbers; only what is no multiple gets a shorter last step."""
+    out, _ = zspring(tmp_path, "simulate", "--stop", stop, "--step", step, "--output", "out")
+    times = [float(row["time [s]"]) for row in table(tmp_path / "out/simulation.csv")]
+    assert times == pytest.approx([*(float(step) * n for n in range(steps)), float(stop)], abs=1e-12)
+    assert out.startswith(f"{steps} communication steps from 0 s to {stop} s\n")
+
+
+def test_simulate_without_inputs_runs_the_experiment_of_the_fmu(fmu, tmp_path):
+    experiment = fmu.description.defaultExperiment
+    zspring(tmp_path, "simulate", "--output", "out")
+    times = [float(row["time [s]"]) for row in table(tmp_path / "out/simulation.csv")]
+    assert times[-1] == float(experiment.stopTime)
+    assert np.diff(times) == pytest.approx(float(experiment.stepSize))
+
+
+def test_inputs_may_begin_late_in_milliseconds_and_end_before_the_stop(tmp_path):
+    (tmp_path / "force.csv").write_text("contact_force [N],time [ms]\n120,500\n130,600\n")
+    zspring(tmp_path, "simulate", "--input", "force.csv", "--step", "0.05", "--output", "out")
+    times = [float(row["time [s]"]) for row in table(tmp_path / "out/simulation.csv")]
+    assert times == pytest.approx([0.5, 0.55, 0.6])
+    _, err = zspring(tmp_path, "simulate", "--input", "force.csv", "--stop", "0.7", status=1)
+    assert "--stop 0.7 s: the input file ends at 0.6 s" in err
+
+
+def test_cubic_inputs_follow_a_cubic_exactly(tmp_path):
+    """Between rows 0.1 s apart of a head displacement t^2 (1 - t) / 10; linear ones would cut the corners."""
+    rows = [f"{t:.1f},{t * t * (1 - t) / 10:.9f}" for t in np.arange(11) / 10]
+    (tmp_path / "z.csv").write_text("\n".join(["time [s],head_displacement [m]", *rows]) + "\n")
+    for kind, error in (("cubic", 0.0), ("linear", 1e-4)):
+        move = ["--drive", "Displacement", "--input", "z.csv", "--interpolation", kind, "--step", "0.05"]
+        zspring(tmp_path, "simulate", *move, "--set", "solver.step=0.001", "--output", kind)
+        t, z = np.array(
+            [[float(row["time [s]"]), float(row["head.z [m]"])] for row in table(tmp_path / kind / "simulation.csv")]
+        ).T
+        largest = np.abs(z - t**2 * (1 - t) / 10).max()
+        assert largest < 1e-9 if kind == "cubic" else error < largest < 1e-3
+
+
+def test_the_phase_of_a_driving_point_is_written_between_its_bounds(tmp_path):
+    """Of the linear three-mass model, damped so much that no phase is near the ends."""
+    values = dict(PUBLISHED["DSA-380"]) | {"c1": 200.0, "c2": 200.0}
+    linear = LinearPantograph(head=values.pop("k1"), **values)
+    settings = ["--set", "suspension=Linear", "--set", "c1=200", "--set", "c2=200", "--set", "solver.step=2e-4"]
+    points = ["--amplitudes", "1", "--frequencies", "2:14:1.5", "--tolerance", "1e-6", "--max-periods", "2000"]
+    for quantity, unit, sign in (("receptance", "m/N", 1), ("stiffness", "N/m", -1)):
+        zspring(tmp_path, "frf", *points, *settings, "--quantity", quantity, "--output", quantity)
+        for row in table(tmp_path / quantity / "frf.csv"):
+            f = float(row["frequency [Hz]"])
+            value = linear.receptance(f) ** sign
+            phase = np.degrees(np.arctan2(value.imag, value.real))
+            assert 1 < -sign * phase < 179
+            assert float(row["phase [deg]"]) == pytest.approx(phase, abs=0.1)
+            assert float(row[f"magnitude [{unit}]"]) == pytest.approx(abs(value), rel=2e-3)
+            assert float(row["displacement [m]"]) == pytest.approx(1 / (2 * np.pi * f) ** 2)
+
+
 def test_warnings_of_the_fmu_are_told_when_the_command_fails(capsys):
     with pytest.raises(ZSpringError), opened(None) as fmu:
         fmu.warnings.append("the spring is slack")
@@ -202,6 +265,49 @@ def test_info_lists_every_variable(fmu, tmp_path):
     assert "N.m" in out and "0.3" in out and "synthetic" in out
     out, _ = zspring(tmp_path, "info", "--path")
     assert Path(out.strip()) == fmu.path
+
+
+@pytest.mark.parametrize("catenary", [False, True])
+def test_info_tells_start_values_and_bounds_as_the_model_description_has_them(fmu, fmu_catenary, tmp_path, catenary):
+    """Column by column, below the head line's words; read from the XML itself."""
+    out, _ = zspring(tmp_path, "info", *(["--catenary"] if catenary else []))
+    header, *lines = out.splitlines()
+    names = ("name", "causality", "unit", "start", "allowed", "description")
+    begins = [header.index(name) for name in names]
+    rows = {}
+    for line in lines:
+        cells = [line[begin:end].strip() for begin, end in zip(begins, [*begins[1:], None])]
+        rows[cells[0]] = dict(zip(names, cells))
+    root = ElementTree.fromstring(
+        zipfile.ZipFile((fmu_catenary if catenary else fmu).path).read("modelDescription.xml")
+    )
+    items = {t.get("name"): [i.get("name") for i in t.iter("Item")] for t in root.iter("SimpleType")}
+    variables = root.findall("ModelVariables/ScalarVariable")
+    assert list(rows) == [variable.get("name") for variable in variables]
+    for variable in variables:
+        row, kind = rows[variable.get("name")], variable[0]
+        tunable = "tunable " if variable.get("variability") == "tunable" else ""
+        assert row["causality"] == tunable + variable.get("causality", "local")
+        assert row["unit"] == kind.get("unit", "") and row["description"] == variable.get("description", "")
+        start, low, high = (kind.get(name) for name in ("start", "min", "max"))
+        if kind.tag == "Enumeration":
+            choices = items[kind.get("declaredType")]
+            assert row["allowed"] == " | ".join(choices)
+            assert row["start"] == (choices[int(start) - 1] if start else "")
+            continue
+        assert row["allowed"] == (f"{low or '-inf'} .. {high or 'inf'}" if low or high else "")
+        if kind.tag == "Boolean":
+            assert row["start"] == (start or "")
+        else:
+            assert (float(row["start"]) == float(start)) if start else not row["start"]
+
+
+def test_info_takes_patterns_and_names_what_fits_none(tmp_path):
+    """In the order of the model description, each once."""
+    out, _ = zspring(tmp_path, "info", "zspring.L?", "zspring.L1", "gravity")
+    assert [line.split()[0] for line in out.splitlines()[1:]] == ["zspring.L1", "zspring.L2", "gravity"]
+    _, err = zspring(tmp_path, "info", "gravity", "zspring.M?", "zspring.K?", status=1)
+    assert "no variable 'zspring.K?' in the FMU" in err
 
 
 @pytest.mark.parametrize(

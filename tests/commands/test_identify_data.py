@@ -79,8 +79,11 @@ def test_amplitudes_become_curves_and_displacements_become_accelerations(tmp_pat
     np.testing.assert_allclose(small.acceleration, 2e-3 * OMEGA**2)
     np.testing.assert_allclose(large.acceleration, 5e-3 * OMEGA**2)
     assert (small.label, large.label) == ("2 mm", "5 mm")
-    (kept, _) = in_band([small, large], (2.0, 6.0))
-    np.testing.assert_array_equal(kept.frequency, [2.5, 5.0])
+    for band in (2.0, 6.0), (2.5, 5.0):  # its ends belong to it
+        (kept, _) = in_band([small, large], band)
+        np.testing.assert_array_equal(kept.frequency, [2.5, 5.0])
+        np.testing.assert_array_equal(kept.H, H[1:3])
+        np.testing.assert_allclose(kept.acceleration, 2e-3 * OMEGA[1:3] ** 2)
     with pytest.raises(ZSpringError, match="band 6 to 7 Hz: no data with 2 mm"):
         in_band([small], (6.0, 7.0))
 
@@ -92,6 +95,28 @@ def test_a_contact_force_turns_the_sign_and_a_wrong_one_is_noticed(tmp_path):
     np.testing.assert_allclose(right.H, H, rtol=1e-12)
     assert "contact" in sign_warning([wrong])
     assert sign_warning([right]) is None
+
+
+def test_a_sign_is_doubted_where_most_points_give_energy_out(tmp_path):
+    """Two of four may be noise, three of four are not; counted over all curves."""
+    curves = {}
+    for wrong in range(5):
+        imaginary = np.where(np.arange(4) < wrong, 1, -1) * np.abs(H.imag)
+        path = write(tmp_path / "a.csv", "frequency [Hz],real [m/N],imaginary [m/N]", FREQUENCY, H.real, imaginary)
+        (curves[wrong],) = read_curves(Source(path, amplitude=1.0))
+    assert [sign_warning([curves[n]]) is None for n in range(5)] == [True, True, True, False, False]
+    assert sign_warning([curves[4], curves[0]]) is None
+    assert "at 7 of 8 points" in sign_warning([curves[4], curves[3]])
+
+
+@pytest.mark.parametrize("status, kept", [("settled", 2), ("not settled", 2), ("left out", 1), ("failed: x", 1)])
+def test_points_that_a_file_marks_as_not_measured_are_passed_over(tmp_path, status, kept):
+    """Their cells may be empty."""
+    cells = ",," if kept == 1 else ",1e-3,-1e-4"
+    lines = "frequency [Hz],amplitude [m/s2],status,H_re [m/N],H_im [m/N]", f"1,0.5,{status}{cells}"
+    (tmp_path / "frf.csv").write_text("\n".join([*lines, "2,0.5,settled,2e-3,-1e-4\n"]))
+    (curve,) = read_curves(Source(tmp_path / "frf.csv"))
+    assert curve.frequency.size == kept and curve.H[-1] == pytest.approx(2e-3 - 1e-4j)
 
 
 def test_the_fixture_behind_the_load_cell_is_taken_off(tmp_path):
@@ -122,7 +147,7 @@ def universal_file(path: Path, value: np.ndarray, **fields) -> Path:
         "z_axis_spec_data_type": 12,
         "z_axis_value": 0.5,
     }
-    dataset = pyuff.prepare_58(x=FREQUENCY, data=value, **{**defaults, **fields})
+    dataset = pyuff.prepare_58(**{"x": FREQUENCY, "data": value, **defaults, **fields})
     dataset["type"] = 58
     pyuff.UFF(str(path)).write_sets([dataset], mode="overwrite")
     return path
@@ -168,9 +193,73 @@ def test_a_universal_file_without_labels_uses_its_data_set_of_units(tmp_path):
     np.testing.assert_allclose(curve.H, H, rtol=1e-6)
 
 
+# What one unit of each label is in SI units, and the kind of quantity that has it.
+MOTION_LABELS = {
+    8: {"m": 1.0, "mm": 1e-3, "um": 1e-6},
+    11: {"m/s": 1.0, "mm/s": 1e-3},
+    12: {"m/s2": 1.0, "m/s^2": 1.0, "mm/s2": 1e-3, "mm/s^2": 1e-3, "g": 9.80665},
+}
+FORCE_LABELS = {"N": 1.0, "kN": 1e3}
+
+
+@pytest.mark.parametrize("motion, label", [(kind, label) for kind in MOTION_LABELS for label in MOTION_LABELS[kind]])
+@pytest.mark.parametrize("force", [9, 13])
+@pytest.mark.parametrize("force_label", FORCE_LABELS)
+def test_every_label_of_a_universal_file_counts_above_and_below_the_line(tmp_path, motion, label, force, force_label):
+    """Motion over force and force over motion, with the number that the file has in units of its labels."""
+    moved = H * (2j * np.pi * FREQUENCY) ** {8: 0, 11: 1, 12: 2}[motion] / MOTION_LABELS[motion][label]
+    value = moved * FORCE_LABELS[force_label]
+    for number, axes in (
+        (value, (motion, label, force, force_label)),
+        (1 / value, (force, force_label, motion, label)),
+    ):
+        path = universal_file(tmp_path / "a.uff", number, **dict(zip(UNITS, axes)))
+        (curve,) = read_curves(Source(path))
+        np.testing.assert_allclose(curve.H, H, rtol=1e-6)
+
+
+@pytest.mark.parametrize("response, reference, sign", [(3, 3, 1), (-3, 3, -1), (3, -3, -1), (-3, -3, 1)])
+def test_the_directions_of_a_universal_file_count(tmp_path, response, reference, sign):
+    path = universal_file(tmp_path / "a.uff", sign * H, rsp_dir=response, ref_dir=reference)
+    (curve,) = read_curves(Source(path))
+    np.testing.assert_allclose(curve.H, H, rtol=1e-6)
+
+
+def test_amplitudes_of_a_universal_file_go_before_those_of_the_settings(tmp_path):
+    path = universal_file(tmp_path / "a.uff", H, z_axis_value=0.25)
+    (curve,) = read_curves(Source(path, amplitude=2.0))
+    np.testing.assert_allclose(curve.acceleration, 0.25)
+    assert curve.label == "0.25 m/s2"
+    path = universal_file(tmp_path / "a.uff", H, z_axis_value=0.0, z_axis_spec_data_type=0)
+    (curve,) = read_curves(Source(path, amplitude=2.0))
+    np.testing.assert_allclose(curve.acceleration, 2.0)
+
+
+def test_other_data_sets_and_the_static_line_of_a_universal_file_are_passed_over(tmp_path):
+    """A coherence, a transfer between two points, and two responses, the first of which begins at 0 Hz."""
+    path = universal_file(tmp_path / "a.uff", np.ones(4), func_type=6)
+    with_static = universal_file(tmp_path / "b.uff", np.concatenate([[5.0], H]), x=np.concatenate([[0.0], FREQUENCY]))
+    others = [
+        universal_file(tmp_path / "c.uff", H, rsp_node=2),
+        universal_file(tmp_path / "d.uff", H, z_axis_value=4.0),
+    ]
+    path.write_text("".join(each.read_text() for each in (path, with_static, *others)))
+    small, large = read_curves(Source(path))
+    for curve, acceleration in ((small, 0.5), (large, 4.0)):
+        np.testing.assert_allclose(curve.frequency, FREQUENCY)
+        np.testing.assert_allclose(curve.H, H, rtol=1e-6)
+        np.testing.assert_allclose(curve.acceleration, acceleration)
+
+
 @pytest.mark.parametrize(
     "fields, complaint",
     [
+        ({"z_axis_value": -0.5}, "data set 1: no amplitude"),
+        ({"z_axis_spec_data_type": 8}, "data set 1: Z-axis of type 8: must be acceleration"),
+        ({"x": FREQUENCY[::-1]}, "data set 1: the frequencies must increase"),
+        ({"x": np.array([1.0, 2.0, 2.0, 3.0])}, "data set 1: the frequencies must increase"),
+        ({"orddenom_spec_data_type": 12}, "data set 1: types 8 over 12: must be motion over force"),
+        ({"orddenom_axis_units_lab": "lbf"}, "data set 1: unit 'lbf': must be one of m, mm"),
         ({"ordinate_axis_units_lab": "NONE"}, "data set 1: unit 'NONE': must be one of m, mm"),
         ({"ordinate_spec_data_type": 5}, "data set 1: types 5 over 13: must be motion over force"),
         ({"z_axis_value": 0.0}, "data set 1: no amplitude"),
@@ -218,13 +307,64 @@ def test_a_bad_measurement_is_refused_with_file_line_and_column(tmp_path, text, 
 @pytest.mark.parametrize(
     "text, complaint",
     [
-        ("displacement [mm],force\n0,1\n1,2\n2,3\n", r"column 'force': unit \[\]: must be N or kN"),
+        ("displacement [mm],force\n0,1\n1,2\n2,3\n", r"column 'force' needs its unit, as in 'force \[N\]'"),
         ("displacement [mm]\n0\n1\n2\n", "no column 'force'"),
         ("displacement [mm],force [N]\n0,1\n1,x\n2,3\n", "line 3: force = 'x': must be a finite number"),
         ("displacement [mm],force [N],time [s]\n0,1,0\n1,2,1\n2,3,1\n", "line 4: time must increase"),
     ],
 )
 def test_a_bad_static_test_is_refused_with_file_line_and_column(tmp_path, text, complaint):
+    path = tmp_path / "static.csv"
+    path.write_text(text)
+    with pytest.raises(ZSpringError, match=f"static.csv.*{complaint}"):
+        read_static_test(path, 0.005)
+
+
+def static_file(path: Path, columns: str, *values) -> Path:
+    return write(path, columns, *map(np.asarray, values))
+
+
+def test_a_static_test_without_time_moves_with_the_given_speed(tmp_path):
+    """The way to the first point begins at displacement 0; a pause takes a millisecond."""
+    path = static_file(tmp_path / "a.csv", "force [kN],displacement [mm]", [0.01, 0.02, 0.02, -0.03], [2, -4, -4, 1])
+    test = read_static_test(path, 0.005)
+    np.testing.assert_allclose(test.displacement, [2e-3, -4e-3, -4e-3, 1e-3])
+    np.testing.assert_allclose(test.force, [10, 20, 20, -30])
+    np.testing.assert_allclose(test.duration, [0.4, 1.2, 1e-3, 1.0])
+
+
+def test_times_of_a_static_test_may_be_uneven_and_begin_anywhere(tmp_path):
+    """Only the way to the first point, which no time tells, takes what the speed makes of it."""
+    columns = "displacement [m],time [s],force [N]"
+    path = static_file(tmp_path / "a.csv", columns, [-0.003, 0.001, 0.002, 0.004], [7, 7.5, 9.5, 9.625], [1, 2, 3, 4])
+    test = read_static_test(path, 0.01)
+    np.testing.assert_allclose(test.displacement, [-0.003, 0.001, 0.002, 0.004])
+    np.testing.assert_allclose(test.force, [1, 2, 3, 4])
+    np.testing.assert_allclose(test.duration, [0.3, 0.5, 2.0, 0.125])
+
+
+def test_a_damper_in_a_static_test_feels_the_speed_of_each_way(tmp_path):
+    """A linear head on a blocked frame: the force on it rises by k1 z and by c1 times the speed to each point."""
+    times, z = np.array([0.0, 0.4, 1.0, 1.2, 2.2]), np.array([1.0, 3.0, -2.0, 4.0, 2.0])
+    path = static_file(tmp_path / "a.csv", "time [s],displacement [mm],force [N]", times, z, z)
+    test = read_static_test(path, 0.005)
+    stiffness, damper = 9000.0, 2000.0
+    speeds = 1e-3 * np.array([5.0, 5.0, -5 / 0.6, 30.0, -2.0])
+    with Fmu() as model, model.instances() as (instance,):
+        names = ["suspension=Linear", f"k1={stiffness}", f"c1={damper}", "static_force=100"]
+        found = test.simulated(instance, model.variables.parse_assignments(names))
+    np.testing.assert_allclose(found, stiffness * 1e-3 * z + damper * speeds - 100, atol=0.05)
+
+
+@pytest.mark.parametrize(
+    "text, complaint",
+    [
+        ("displacement [mm],force [N]\n0,1\n1,2\n", "needs at least three rows"),
+        ("displacement [mm],force [N],time [ms]\n0,1,0\n1,2,1\n2,3,2\n", r"column 'time': unit \[ms\]: must be s"),
+        ("displacement [mm],force [N],time [s]\n0,1,0\n1,2,0\n2,3,1\n", "line 3: time must increase"),
+    ],
+)
+def test_a_static_test_that_is_short_or_stands_still_is_refused(tmp_path, text, complaint):
     path = tmp_path / "static.csv"
     path.write_text(text)
     with pytest.raises(ZSpringError, match=f"static.csv.*{complaint}"):

@@ -9,10 +9,9 @@ from scipy.io import loadmat
 from commands import zspring
 from harness import PRECISE, bench_point
 from linear import PUBLISHED, LinearPantograph, ZSpringLinear, step_error
-from zspring.files import used_parameters
 from zspring.fmu import Fmu
 from zspring.linearize.modes import complex_modes, natural_frequencies
-from zspring.receptance import MODELS, linear_model
+from zspring.receptance import MODELS, LinearModel, linear_model
 
 SUSPENSIONS = {"linear": "Linear", "locked": "LinearLocked", "free": "LinearFree"}
 UNEQUAL = {"zspring.J1": 5e-4, "zspring.J2": 9e-4}  # else one rod mode, both rods against each other, never moves
@@ -20,7 +19,7 @@ UNEQUAL = {"zspring.J1": 5e-4, "zspring.J2": 9e-4}  # else one rod mode, both ro
 
 def model_of(parameters, name):
     with Fmu() as fmu:
-        used = used_parameters(fmu, parameters)
+        used = fmu.used_parameters(parameters)
         reach = np.array([0.075 if dof in ("alpha", "beta") else 1.0 for dof in linear_model(used, name).names])
         return linear_model(used, name), reach
 
@@ -126,12 +125,25 @@ def test_the_receptance_is_what_the_fmu_measures_on_its_bench(pantograph, name):
         assert abs(bench_point(p, frequency, 0.25) - Linear.receptance(frequency)) < step_error(Linear, frequency, step)
 
 
+def test_modes_come_by_ascending_magnitude_with_their_shapes_and_damping():
+    """Three masses on their own springs; the second one is damped more than critically, at 4 and 16 1/s.
+
+    The first is free and at rest; the last one oscillates with s = -1 +- 10i.
+    """
+    M, C, K = np.diag([5.0, 1.0, 2.0]), np.diag([0.0, 20.0, 4.0]), np.diag([0.0, 64.0, 202.0])
+    modes = complex_modes(LinearModel(("u1", "u2", "u3"), M, C, K), np.array([1.0, 1.0, 0.5]))
+    np.testing.assert_allclose(modes.eigenvalues, [0, 0, -4, -1 + 10j, -16], atol=1e-6)
+    np.testing.assert_allclose(modes.damping[2:], [1, 1 / np.sqrt(101), 1], rtol=1e-9)
+    np.testing.assert_allclose(modes.frequencies[2:], np.array([4, np.sqrt(101), 16]) / (2 * np.pi), rtol=1e-9)
+    np.testing.assert_allclose(modes.shapes[:, 2:], [[0, 0, 0], [1, 0, 1], [0, 2, 0]], atol=1e-9)
+
+
 def test_massless_rods_and_a_massless_lower_frame_leave_the_static_condensation():
     """The head's free stiffness is then k_free, and the frame one mass."""
     massless = {"zspring.J1": 0.0, "zspring.J2": 0.0, "m3": 0.0, "k3": 200.0}
     model, reach = model_of(massless, "free")
     with Fmu() as fmu:
-        p = used_parameters(fmu, massless)
+        p = fmu.used_parameters(massless)
     head, base = p["zspring.k_free"], 1 / (1 / p["k2"] + 1 / p["k3"])
     chain = np.array([[head, -head], [-head, head + base]]) / np.sqrt(np.outer([p["m1"], p["m2"]], [p["m1"], p["m2"]]))
     expected = np.sqrt(np.linalg.eigvalsh(chain)) / (2 * np.pi)

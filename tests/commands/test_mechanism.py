@@ -11,7 +11,7 @@ import pytest
 from commands import PNG, table, zspring
 from zspring.fmu import Fmu
 from zspring.linkage import linkage_points
-from zspring.mechanism.cycle import simulate_cycle
+from zspring.mechanism.cycle import Cycle, simulate_cycle
 from zspring.mechanism.plot import spring_line
 from zspring.mechanism.run import LARGEST_DRAWN, magnification
 
@@ -72,6 +72,19 @@ def test_small_motion_is_magnified_and_large_motion_is_not(instance):
         assert factor == 1 or LARGEST_DRAWN / 2.5 <= factor * largest <= LARGEST_DRAWN
         moved = cycle.points(factor)[:, 0, 1] - cycle.points(0.0)[:, 0, 1]
         np.testing.assert_allclose(moved, factor * cycle.u1, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "largest, factor",
+    [(0.03, 1), (0.0251, 1), (0.0124, 2), (0.0126, 1), (0.0049, 5), (0.0051, 2), (0.0024, 10), (1e-4, 200)],
+)
+def test_magnifications_are_one_two_five_ten_and_no_more_than_there_is_room_for(largest, factor):
+    """25 mm are drawn; the compression counts, in either direction, not the motion."""
+    for sign in (-1, 1):
+        motion = np.array([0.0, sign * largest, -0.2 * sign * largest])
+        zero = np.zeros(3)
+        cycle = Cycle(2.0, 1.0, {}, 7 + zero, zero, zero, 7 + motion, np.zeros((3, 2)))
+        assert magnification(cycle) == factor
 
 
 def test_the_spring_is_drawn_from_end_to_end():

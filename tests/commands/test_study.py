@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import json
 import os
@@ -21,7 +22,7 @@ import numpy as np
 import pytest
 from distributed import Client
 
-from commands import PNG, QUICK, start, table, zspring
+from commands import PNG, QUICK, begin, start, table, zspring
 from paths import ROOT
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
@@ -248,52 +249,38 @@ class Dask:
 
     def __init__(self, folder: Path):
         self.folder = folder
-        (folder / "refuse.py").write_text(f"import sys\nfor name in {NOT_NEEDED}:\n    sys.modules[name] = None\n")
-        file = folder / "scheduler.json"
-        self.scheduler = self._start(
-            "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-show", "--scheduler-file", str(file)
-        )
+        refuse, file = folder / "refuse.py", folder / "scheduler.json"
+        refuse.write_text(f"import sys\nfor name in {NOT_NEEDED}:\n    sys.modules[name] = None\n")
+        own = ["--host", "127.0.0.1", "--port", "0", "--no-show", "--scheduler-file", str(file)]
+        self.scheduler = self._start("scheduler", *own)
+        self.address = self._address(file)
+        options = ["--nthreads", "1", "--no-nanny", "--preload", str(refuse)]
         self.workers = [
-            self._start(
-                "worker",
-                "--scheduler-file",
-                str(file),
-                "--nthreads",
-                "1",
-                "--no-nanny",
-                "--preload",
-                str(folder / "refuse.py"),
-                "--local-directory",
-                str(folder / f"worker{number}"),
-            )
+            self._start("worker", self.address, *options, "--local-directory", str(folder / f"worker{number}"))
             for number in range(2)
         ]
-        deadline = time.monotonic() + 30
-        while not file.exists():
+        with Client(self.address, timeout=60, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
+
+    def _address(self, file: Path) -> str:
+        """From the scheduler's file, once that is written to its end."""
+        deadline = time.monotonic() + 60
+        while True:
+            with contextlib.suppress(OSError, ValueError):
+                return json.loads(file.read_text())["address"]
             assert self.scheduler.poll() is None and time.monotonic() < deadline
             time.sleep(0.02)
-        self.address = json.loads(file.read_text())["address"]
 
     def _start(self, what: str, *arguments: str) -> subprocess.Popen:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", *arguments, "--no-dashboard"]
         with open(self.folder / f"{what}.log", "a") as log:
-            return subprocess.Popen(
-                [sys.executable, "-m", f"distributed.cli.dask_{what}", *arguments, "--no-dashboard"],
-                stdout=log,
-                stderr=log,
-                cwd=self.folder,
-            )
-
-    def end(self) -> None:
-        for process in (*self.workers, self.scheduler):
-            process.kill()
-            process.wait()
+            return begin(command, stdout=log, stderr=log, cwd=self.folder)
 
 
 @pytest.fixture
-def cluster(tmp_path) -> Iterator[Dask]:
-    dask_processes = Dask(tmp_path)
-    yield dask_processes
-    dask_processes.end()
+def cluster(tmp_path) -> Dask:
+    """Its processes end with the test, as all that the helpers begin."""
+    return Dask(tmp_path)
 
 
 def test_a_killed_worker_costs_only_its_task(cluster, tmp_path):

@@ -10,36 +10,39 @@ import pytest
 from probe import probe_folder
 from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
 
-if sys.platform == "linux":  # counting replaces glibc's malloc
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="counting replaces glibc's malloc: only on Linux")
 
-    def count(model: str, integers: dict[str, int], reals: dict[str, float]) -> tuple[int, int]:
-        """Allocations in 500 steps of 11 ms and in the instantiation."""
-        with Fmu(installed_fmu(model)) as fmu:
-            settings = [
-                f"{kind}{fmu.variables[name].valueReference}={value}"
-                for kind, values in (("i", integers), ("r", reals))
-                for name, value in values.items()
-            ]
-            program, guid = probe_folder() / "count_allocations", fmu.description.guid
-            command = [program, fmu.library, guid, "0.011", "500", *settings]
-            done = subprocess.run(command, check=True, capture_output=True, text=True)
-        in_steps, in_instantiate = map(int, done.stdout.split())
-        return in_steps, in_instantiate
 
-    @pytest.mark.parametrize("drive", [1, 2, 3, 4], ids=["Force", "Displacement", "Wire", "Bench"])
-    @pytest.mark.parametrize("friction", [1, 2], ids=["Regularized", "Coulomb"])
-    def test_steps_of_the_pantograph_do_not_allocate(drive, friction):
-        in_steps, in_instantiate = count(PANTOGRAPH, {"drive": drive, "friction": friction}, {})
-        assert in_instantiate > 0  # so counting works
-        assert in_steps == 0
+def count(model: str, integers: dict[str, int], reals: dict[str, float]) -> tuple[int, int]:
+    """Allocations in 500 steps of 11 ms and in the instantiation."""
+    with Fmu(installed_fmu(model)) as fmu:
+        settings = [
+            f"{kind}{fmu.variables[name].valueReference}={value}"
+            for kind, values in (("i", integers), ("r", reals))
+            for name, value in values.items()
+        ]
+        program, guid = probe_folder() / "count_allocations", fmu.description.guid
+        command = [program, fmu.library, guid, "0.011", "500", *settings]
+        done = subprocess.run(command, check=True, capture_output=True, text=True)
+    in_steps, in_instantiate = map(int, done.stdout.split())
+    return in_steps, in_instantiate
 
-    def test_steps_of_the_catenary_do_not_allocate():
-        """With two pantographs that make droppers slack."""
-        reals = {
-            f"pantograph[{i}].{name}": value
-            for i, start in ((1, 20.0), (2, 100.0))
-            for name, value in (("start", start), ("speed", 70.0), ("force", 300.0))
-        }
-        in_steps, in_instantiate = count(CATENARY, {}, reals)
-        assert in_instantiate > 0
-        assert in_steps == 0
+
+@pytest.mark.parametrize("drive", [1, 2, 3, 4], ids=["Force", "Displacement", "Wire", "Bench"])
+@pytest.mark.parametrize("friction", [1, 2], ids=["Regularized", "Coulomb"])
+def test_steps_of_the_pantograph_do_not_allocate(drive, friction):
+    in_steps, in_instantiate = count(PANTOGRAPH, {"drive": drive, "friction": friction}, {})
+    assert in_instantiate > 0  # so counting works
+    assert in_steps == 0
+
+
+def test_steps_of_the_catenary_do_not_allocate():
+    """With two pantographs that make droppers slack."""
+    reals = {
+        f"pantograph[{i}].{name}": value
+        for i, start in ((1, 20.0), (2, 100.0))
+        for name, value in (("start", start), ("speed", 70.0), ("force", 300.0))
+    }
+    in_steps, in_instantiate = count(CATENARY, {}, reals)
+    assert in_instantiate > 0
+    assert in_steps == 0

@@ -86,6 +86,28 @@ def test_directional_derivatives_of_a_step_are_its_differences(catenary, fmu_cat
 
 
 @pytest.mark.parametrize("travel", TRAVELS)
+@pytest.mark.parametrize("first, second", [(0.4, 179.3), (179.3, 0.4)])
+def test_beside_the_anchors_derivatives_are_differences_too(catenary, fmu_catenary, travel, first, second):
+    """In the line's first and last element, whose outer ends do not move."""
+    p = catenary(LINE | {"mesh.element": 1.0}, initialize=False)
+    kind = "start" if travel == "Speed" else "position"
+    p.set({"travel": travel, f"pantograph[1].{kind}": first, f"pantograph[2].{kind}": second, **FORCES})
+    p.initialize()
+    speeds = {first: 3.0, second: -4.0}
+    outputs, size, time = real_outputs(fmu_catenary), 1e-3, 0.0
+    for _ in range(20):
+        time += size
+        for i, begin in ((1, first), (2, second)):
+            name, value = ("speed", speeds[begin]) if travel == "Speed" else ("position", begin + speeds[begin] * time)
+            p[f"pantograph[{i}].{name}"] = value
+        p.step(size)
+    expected = {name: differences(p, name, outputs, size) for name in inputs(travel)}
+    p.step(size)
+    for name, columns in expected.items():
+        compare(directional(p.slave, p, outputs, name), columns, p.reals(outputs), DELTAS[name.rsplit(".")[-1]], name)
+
+
+@pytest.mark.parametrize("travel", TRAVELS)
 def test_derivatives_before_the_first_step_are_those_of_the_equilibrium(catenary, fmu_catenary, travel):
     p, outputs = catenary(LINE | TRAVELS[travel] | FORCES, initialize=False), real_outputs(fmu_catenary)
     p.slave.setupExperiment()

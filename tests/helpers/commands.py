@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -21,14 +23,36 @@ frequencies = "3:8:0.5"
 """
 
 
+_started: list[subprocess.Popen] = []
+
+
+def begin(command: list[str], **options) -> subprocess.Popen:
+    """A process, with whatever it starts in turn, that `end_all` ends if it has not ended by then."""
+    process = subprocess.Popen(command, start_new_session=True, **options)
+    _started.append(process)
+    return process
+
+
+def end_all() -> None:
+    """End all processes of `begin` and what they left behind."""
+    while _started:
+        process = _started.pop()
+        if hasattr(os, "killpg"):
+            try:
+                os.killpg(process.pid, signal.SIGKILL)  # the group outlives its first process
+            except ProcessLookupError:
+                pass
+        elif process.poll() is None:
+            process.kill()
+        process.wait()
+        for stream in (process.stdout, process.stderr):
+            if stream:
+                stream.close()
+
+
 def start(folder: Path, *arguments: str) -> subprocess.Popen:
-    return subprocess.Popen(
-        [sys.executable, "-m", "zspring", *arguments],
-        cwd=folder,
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
+    command = [sys.executable, "-m", "zspring", *arguments]
+    return begin(command, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 def zspring(folder: Path, *arguments: str, status: int = 0) -> tuple[str, str]:

@@ -196,10 +196,11 @@ def test_side_by_side_coupling_is_one_order_worse(along):
 
 
 def test_a_tighter_line_rises_less(along, two_masses):
+    """Statically by half with twice the tension; in passing a little more."""
     loose, tight = (
         along([two_masses], {"contact_wire.tension": tension, "messenger.tension": tension}) for tension in (15e3, 30e3)
     )
-    assert np.max(tight.wire_height) < 0.7 * np.max(loose.wire_height)
+    assert 0.5 < np.max(tight.wire_height) / np.max(loose.wire_height) < 0.6
 
 
 @pytest.mark.parametrize("pantograph", [{}, {"friction": 2}, {"suspension": 2, "static_force": 40.0}])
@@ -209,7 +210,7 @@ def test_two_steps_of_the_catenary_do_for_an_implicit_step(fmus, pantograph, dri
     journey = Journey(300 / 3.6, **EXTENT)
     with LineRun(System(*fmus, SHORT, [pantograph], journey, Coupling("implicit", drive))) as run:
         run.finish()
-        assert run.wire_steps < 2.02
+        assert 1.9 < run.wire_steps < 2.02
         assert run.result().slack_droppers.max() > 0
 
 

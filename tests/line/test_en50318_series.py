@@ -113,15 +113,15 @@ GAP = np.where(TIME >= 1.0, TIME + 0.5, TIME)
         ({"time [s]": TIME[:101], "contact_force [N]": FORCE[:101]}, "0.2 s is too short for 20 Hz"),
         ({"time [s]": TIME[:1], "contact_force [N]": FORCE[:1]}, "time does not increase"),
         ({"time [s]": 10 * TIME, "contact_force [N]": FORCE}, "50 samples/s: at least 100 are needed"),
-        ({"time [s]": TIME, "contact_force": FORCE}, "'contact force': has no unit: must be .N. or .kN."),
-        ({"time": TIME, "contact_force [N]": FORCE}, "'time': has no unit"),
-        ({"time [s]": TIME, "contact_force [lbf]": FORCE}, "unit .lbf.: must be .N. or .kN."),
+        ({"time [s]": TIME, "contact_force": FORCE}, "'contact force' needs its unit, as in 'contact force .N.'"),
+        ({"time": TIME, "contact_force [N]": FORCE}, "column 'time' needs its unit, as in 'time .s.'"),
+        ({"time [s]": TIME, "contact_force [lbf]": FORCE}, "column 'contact_force': unit .lbf.: must be one of N, kN"),
         ({"time [s]": TIME, "force [N]": FORCE}, "no column 'contact force .N.' .there are: time"),
         ({"contact_force [N]": FORCE}, "no column 'time .s.' or 'position .m.'"),
         ({"time [s]": TIME, "time [ms]": TIME, "contact_force [N]": FORCE}, "two columns 'time'"),
-        ({"time [s]": TIME, "contact_force [N]": changed(FORCE, 7, np.nan)}, "line 10: contact force = 'nan'"),
-        ({"time [s]": TIME, "contact_force [N]": ["1"] * 40 + [""] * 961}, "line 43: contact force = ''"),
-        ({"time [s]": TIME, "contact_force [N]": ["x"] * 1001}, "line 3: contact force = 'x': must be a finite"),
+        ({"time [s]": TIME, "contact_force [N]": changed(FORCE, 7, np.nan)}, "line 10: contact_force = 'nan'"),
+        ({"time [s]": TIME, "contact_force [N]": ["1"] * 40 + [""] * 961}, "line 43: contact_force = ''"),
+        ({"time [s]": TIME, "contact_force [N]": ["x"] * 1001}, "line 3: contact_force = 'x': must be a finite"),
         ({"time [s]": TIME, "contact_force [N]": FORCE, "position [m]": POSITION[::-1]}, "position decreases"),
         ({"time [s]": [], "contact_force [N]": []}, "no row of values"),
     ],
@@ -136,3 +136,49 @@ def test_bad_files_are_refused_in_one_line(columns, message, tmp_path):
 def test_rounded_times_are_even_enough():
     """Files with few digits: 1 ms at 4 decimals of 500 samples/s."""
     Series("test", np.round(TIME, 5), FORCE).check()
+
+
+@pytest.mark.parametrize(
+    ("time", "complaint"),
+    [
+        (np.arange(501) / 500, None),
+        (np.arange(500) / 500, r"0\.998 s is too short for 20 Hz: at least 1 s"),
+        (np.arange(201) / 100, None),
+        (np.arange(201) / 99, r"99 samples/s: at least 100 are needed"),
+        (np.concatenate([TIME[:500], TIME[500:] + 0.019 * 0.002]), None),
+        (np.concatenate([TIME[:500], TIME[500:] + 0.021 * 0.002]), r"gap: step of 0\.002042 s at 0\.998 s, 0\.002 s"),
+        (np.concatenate([TIME[:500], TIME[500:] - 0.021 * 0.002]), r"gap: step of 0\.001958 s"),
+    ],
+)
+def test_series_are_refused_just_beyond_the_limits(time, complaint):
+    """1 s, 100 samples a second, steps within 2 % of the usual one."""
+    series = Series("test", time, np.ones(time.size))
+    if complaint is None:
+        assert series.check() is series
+    else:
+        with pytest.raises(ZSpringError, match=complaint):
+            series.check()
+
+
+@pytest.mark.parametrize(("wrong", "what"), [(13, "gap"), (14, "sample rate changes")])
+def test_many_uneven_steps_are_another_rate_and_few_are_gaps(wrong, what):
+    """More than a hundredth of 1000 steps and three."""
+    steps = np.full(1000, 0.002)
+    steps[100 : 100 + wrong] = 0.004
+    with pytest.raises(ZSpringError, match=f"test: {what}: step of 0.004 s"):
+        Series("test", np.concatenate([[0], np.cumsum(steps)]), np.ones(1001)).check()
+
+
+def test_a_position_that_stands_still_is_no_step_back():
+    position = np.maximum(POSITION, 50)
+    Series("test", TIME, FORCE, position).check()
+    with pytest.raises(ZSpringError, match="position decreases after 50 m"):
+        Series("test", TIME, FORCE, changed(position, 1, 49.9)).check()
+
+
+def test_the_positions_of_a_time_begin_at_the_first_sample(tmp_path):
+    path = write(tmp_path / "t.csv", {"time [s]": TIME + 3, "contact_force [N]": FORCE})
+    found = read_series(path, speed=60.0)
+    assert found.position == pytest.approx(60 * TIME) and found.time == pytest.approx(TIME + 3)
+    path = write(tmp_path / "p.csv", {"position [m]": POSITION, "contact_force [N]": FORCE})
+    assert read_series(path, speed=60.0).time[0] == 0

@@ -57,7 +57,8 @@ def case_table(found: Statistics, judgements: Sequence[Judgement], speed: float 
             judged = by_name.get(name)
             row += ["{:g} to {:g}".format(*judged.accepted), distance(judged)] if judged else ["", ""]
         rows.append(row)
-    share = found["standard_deviation"] / found["mean_force"]
+    mean = found["mean_force"]
+    share = found["standard_deviation"] / mean if mean > 0 else math.inf
     inside = Cell("inside", GOOD) if share <= DEVIATION_SHARE else Cell("outside", BAD)
     blank = [""] * (2 if judgements else 0)
     label = f"standard deviation / mean force, at most {DEVIATION_SHARE:g}"

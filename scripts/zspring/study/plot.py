@@ -26,11 +26,13 @@ def envelope_figure(envelopes: Sequence[Envelope], cases: int, title: str) -> Fi
             envelope.frequency, low_band, high_band, color="C0", alpha=0.35, linewidth=0, label="5 to 95 %"
         )
         axes.plot(envelope.frequency, median, color="black", linewidth=1.2, label="median")
-        axes.set(yscale="log", title=f"{envelope.amplitude:g} m/s²")
+        axes.set_title(f"{envelope.amplitude:g} m/s²")
         axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
         axes.xaxis.set_major_locator(MaxNLocator(8, steps=[1, 2, 5, 10]))
     for axes in panels.flat[len(envelopes) :]:
         axes.set_visible(False)
+    if any(np.isfinite(envelope.percentiles).any() for envelope in envelopes):
+        panels[0, 0].set_yscale("log")  # of all panels, which share it
     panels[0, 0].legend(fontsize=8)
     figure.suptitle(f"{title}\n{cases} cases, by peak acceleration of the head")
     figure.supxlabel("frequency  [Hz]")

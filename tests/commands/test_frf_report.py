@@ -1,0 +1,136 @@
+"""What `zspring frf` says of its points: resonances, errors, doubts, Newton's statistics, and where it writes."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from zspring.bench.measure import FrfPoint, FrfSettings
+from zspring.fmu import Fmu
+from zspring.frf.report import doubtful_lines, error_line, resonance_table, richardson, solver_line
+from zspring.frf.run import default_folder
+from zspring.interrupt import stop_on_interrupt
+from zspring.options import Numbers
+
+
+def points_of(level, frequency, amplitude: float) -> list[FrfPoint]:
+    return [FrfPoint(amplitude, float(f), "settled", complex(np.exp(level(f)))) for f in frequency]
+
+
+def test_the_table_lists_peaks_and_valleys_in_mm_per_newton_between_the_bounds():
+    """Parabolas of log|H|: a peak at 6.53 Hz of 0.4 mm/N, a valley at 4.11 Hz of 0.04 mm/N."""
+
+    def level(f):
+        return np.where(f > 5.3, np.log(4e-4) - (f - 6.53) ** 2, np.log(4e-5) + (f - 4.11) ** 2 / 2)
+
+    def bound(f):
+        return np.log(3e-4) - (f - 6.0) ** 2
+
+    frequency = np.arange(3.0, 8.0, 0.25)
+    points = [*points_of(level, frequency, 4.0), *points_of(bound, frequency, 0.5)]
+    bounds = {name: (frequency, np.exp(bound(frequency)) + 0j) for name in ("locked", "free")}
+    header, *rows = resonance_table(points[::-1], bounds)
+    assert header.split() == ["resonances,", "Hz", "(mm/N)", "antiresonances,", "Hz", "(mm/N)"]
+    cells = [row.replace("(", " ").replace(")", " ").split() for row in rows]
+    assert cells == [
+        ["locked", "6.000", "0.3000"],
+        ["0.5", "m/s2", "6.000", "0.3000"],
+        ["4", "m/s2", "6.530", "0.4000", "4.110", "0.0400"],
+        ["free", "6.000", "0.3000"],
+    ]
+
+
+def test_the_error_estimate_is_exact_for_an_error_of_second_order():
+    """H = 1 + e h^2: what is left at h is e h^2, of which half the step takes three quarters."""
+    for error in (0.01, 0.01 - 0.02j):
+        H, finer = 1 + error, 1 + error / 4
+        assert richardson(H, finer) == pytest.approx(abs(H - 1) / abs(H), rel=1e-12)
+
+
+def test_median_and_worst_error_are_told_in_percent_with_the_place():
+    errors = {(0.5, 3.0): 0.001, (0.5, 6.0): 0.002, (4.0, 3.0): 0.075}
+    assert error_line(errors) == "error estimate of H from half the step: 0.2 % median, 7.5 % worst (at 3 Hz, 4 m/s2)"
+
+
+def test_newtons_statistics_are_sums_but_for_the_worst_step():
+    points = [
+        FrfPoint(1, 2, "settled", steps=100, iterations=150, refinements=1, iterations_max=4),
+        FrfPoint(1, 3, "settled", steps=300, iterations=350, refinements=2, iterations_max=3),
+    ]
+    assert solver_line(points) == "Newton: 1.25 iterations per step, at most 4; 400 steps, 3 halvings"
+    assert solver_line([FrfPoint(1, 2, "failed: x")]).startswith("Newton: 0.00 iterations per step")
+
+
+def test_only_points_that_failed_or_did_not_settle_are_doubtful():
+    points = [
+        FrfPoint(1, 2, "settled", 1.0, 8, 1e-4),
+        FrfPoint(1, 3, "not settled", 1.0, 400, 0.0123),
+        FrfPoint(8, 1, "left out"),
+        FrfPoint(8, 4, "failed: no solution"),
+    ]
+    assert doubtful_lines(points) == [
+        "1 m/s2, 3 Hz: not settled after 400 periods (change 0.012)",
+        "8 m/s2, 4 Hz: failed: no solution",
+    ]
+
+
+def test_results_of_other_settings_go_to_other_folders():
+    """The standard figure's folder is named by friction and direction; anything else adds a code."""
+    with Fmu() as fmu:
+
+        def folder(**settings) -> str:
+            return default_folder(fmu, FrfSettings(**settings)).as_posix()
+
+        assert folder() == "results/frf-regularized-up"
+        assert folder(direction="down", parameters={"friction": 2}) == "results/frf-coulomb-down"
+        assert folder(parameters={"friction": 1}) == folder()
+        others = [
+            {"tolerance": 1e-4},
+            {"amplitudes": (1.0,)},
+            {"parameters": {"m1": 7.0}},
+            {"through": "inputs"},
+            {"max_periods": 500},
+        ]
+        names = {folder(**each) for each in others}
+        assert len(names) == len(others)
+        assert all(name.startswith("results/frf-regularized-up-") and len(Path(name).name) == 27 for name in names)
+
+
+@pytest.mark.parametrize(
+    "text, numbers",
+    [
+        ("3", [3]),
+        ("0.1:0.7:0.1", [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]),
+        ("0.5:1:0.2", [0.5, 0.7, 0.9]),
+        ("2:2:1", [2]),
+        ("4, 1:3:1,2 0.5", [0.5, 1, 2, 3, 4]),
+        ("1:1.3:0.1", [1, 1.1, 1.2, 1.3]),
+    ],
+)
+def test_lists_of_numbers_are_sorted_and_ranges_hold_their_ends(text, numbers):
+    assert Numbers().convert(text, None, None) == tuple(numbers)
+    assert len(Numbers().convert("0.5:20:0.25", None, None)) == 79
+
+
+@pytest.fixture
+def python_interrupts() -> Iterator[None]:
+    """Also where the tests were started in the background, where a shell makes Ctrl-C be ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("python_interrupts")
+def test_the_first_ctrl_c_is_a_wish_and_the_second_an_interruption():
+    before = signal.getsignal(signal.SIGINT)
+    with stop_on_interrupt() as stop:
+        assert not stop.is_set()
+        signal.raise_signal(signal.SIGINT)
+        assert stop.is_set()
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) is before

@@ -1,0 +1,394 @@
+"""How responses are measured and read off: steady states, sweeps, the bench outside the FMU, peaks, phases."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from linear import PUBLISHED, LinearPantograph
+from zspring.bench.fmu_bench import FmuBench
+from zspring.bench.input_bench import InputBench
+from zspring.bench.measure import FrfSettings, left_out, measure, settle, sweeps
+from zspring.bench.measured import Curve
+from zspring.bench.model import BenchModel
+from zspring.bench.resonances import LEAST_STEP, extremes
+from zspring.bench.responses import acceleration_of, as_quantity, phase_degrees, response_of
+from zspring.fmu import Fmu, StepDiscarded
+from zspring.study.evaluations import FrfQuantity
+
+GO_ON = threading.Event()
+
+
+@pytest.fixture(scope="module")
+def own_fmu():
+    with Fmu() as fmu:
+        yield fmu
+
+
+# Steady states
+
+
+class Scripted:
+    """A bench whose H after n whole periods is a given function; the first period of a run is the ramp."""
+
+    def __init__(self, H, fails_at: int | None = None):
+        self._H, self._fails_at = H, fails_at
+        self.instance, self.periods, self.looks = self, -1, []
+
+    def get(self, names):
+        done = max(self.periods, 0)
+        counts = {"solver.steps": 100, "solver.iterations": 150, "solver.refinements": 2}
+        return [5 if name == "solver.iterations_max" else counts[name] * (done + 7) for name in names]
+
+    def run(self, periods: int) -> None:
+        self.periods += periods
+        if self._fails_at is not None and self.periods >= self._fails_at:
+            raise StepDiscarded("no solution")
+        self.looks.append(self.periods)
+
+    @property
+    def H(self) -> complex:
+        return self._H(self.periods)
+
+    @property
+    def change(self) -> float:
+        return abs(self._H(self.periods) - self._H(self.periods - 1)) / abs(self.H)
+
+
+def settled(H, fails_at: int | None = None, **settings):
+    bench = Scripted(H, fails_at)
+    return settle(bench, 1.0, 4.0, FrfSettings(**settings), GO_ON), bench
+
+
+def test_a_steady_answer_is_taken_at_the_fewest_periods():
+    for fewest, taken in ((1, 8), (8, 8), (9, 12), (30, 32)):
+        point, bench = settled(lambda n: 1e-4 - 1e-5j, min_periods=fewest)
+        assert (point.status, point.periods, point.H) == ("settled", taken, 1e-4 - 1e-5j)
+        assert bench.looks == list(range(4, taken + 1, 4))
+
+
+def test_what_it_took_is_counted_from_the_begin_of_the_point():
+    point, _ = settled(lambda n: 1.0, min_periods=12)
+    assert (point.steps, point.iterations, point.refinements) == (1200, 1800, 24)
+    assert point.iterations_max == 5
+    assert point.displacement == pytest.approx(1.0 / (2 * np.pi * 4) ** 2)
+
+
+def test_a_transient_is_waited_for_until_both_changes_are_within_the_tolerance():
+    """1 + q^n: by period it changes by q^n (1/q - 1), from look to look by q^n (1/q^4 - 1), which comes last."""
+    q, tolerance = 0.8, 1e-3
+    expected = next(n for n in range(8, 400, 4) if q**n * (q**-4 - 1) / (1 + q**n) <= tolerance)
+    earlier = next(n for n in range(8, 400, 4) if q**n * (1 / q - 1) / (1 + q**n) <= tolerance)
+    point, _ = settled(lambda n: 1 + q**n, tolerance=tolerance)
+    assert point.status == "settled" and point.periods == expected > earlier
+    assert point.change == pytest.approx(q**expected * (1 / q - 1), rel=1e-3)
+
+
+@pytest.mark.parametrize("beat", [4, 2])
+def test_a_beat_of_the_looks_is_noticed_by_the_period_before(beat):
+    """At every fourth period it comes back to the same, but not from one to the next."""
+    point, bench = settled(lambda n: 1 + 0.1 * np.cos(2 * np.pi * n / beat), max_periods=40)
+    assert point.status == "not settled" and point.periods == 40 == bench.looks[-1]
+    assert point.change == pytest.approx(abs(np.cos(2 * np.pi / beat) - 1) / 11)
+
+
+def test_a_beat_is_noticed_in_its_turns():
+    """It turns between the periods 7 and 8, where it is the same; not so at the look before, at 4."""
+
+    def H(n):
+        return 1 + 0.01 * np.cos(2 * np.pi * (n - 7.5) / 24)
+
+    assert abs(H(8) - H(7)) < 1e-9 < 1e-3 < abs(H(8) - H(4))
+    point, _ = settled(H, max_periods=9)
+    assert point.status == "not settled" and point.periods == 12
+
+
+def test_the_most_periods_end_a_point_that_drifts():
+    point, _ = settled(lambda n: 1 + 0.1 * n, max_periods=20)
+    assert (point.status, point.periods) == ("not settled", 20)
+    assert point.H == pytest.approx(3.0) and point.change == pytest.approx(0.1 / 3)
+
+
+@pytest.mark.parametrize("fails_at", [4, 8])
+def test_a_point_that_fails_keeps_no_number(fails_at):
+    point, _ = settled(lambda n: 1.0, fails_at)
+    assert point.status == "failed: no solution" and np.isnan(point.H) and np.isnan(point.change)
+
+
+def test_a_stopped_point_is_none():
+    stop = threading.Event()
+    stop.set()
+    assert settle(Scripted(lambda n: 1.0), 1.0, 4.0, FrfSettings(), stop) is None
+
+
+# Sweeps
+
+
+def test_a_sweep_has_the_points_that_the_stroke_allows_in_its_direction():
+    """8 m/s2 at 1 Hz is 203 mm; 0.2 m/s2 just 5.07 mm."""
+    settings = FrfSettings((0.2, 8.0), (1.0, 2.0, 3.0), stroke=0.0507)
+    assert [(s.amplitude, s.frequencies) for s in sweeps(settings)] == [(0.2, (1, 2, 3)), (8, (2, 3))]
+    (missing,) = left_out(settings)
+    assert (missing.amplitude, missing.frequency, missing.status) == (8, 1, "left out")
+    assert np.isnan(missing.H) and np.isnan(missing.change)
+    counts = missing.periods, missing.steps, missing.iterations, missing.refinements, missing.iterations_max
+    assert counts == (0, 0, 0, 0, 0)
+    assert [s.frequencies for s in sweeps(replace(settings, direction="down"))] == [(3, 2, 1), (3, 2)]
+    rest = sweeps(replace(settings, direction="rest"))
+    assert [(s.amplitude, *s.frequencies) for s in rest] == [(0.2, 1), (0.2, 2), (0.2, 3), (8, 2), (8, 3)]
+    assert [s.amplitude for s in sweeps(replace(settings, stroke=0.02))] == [0.2]
+
+
+@pytest.mark.parametrize("direction", ["up", "down", "rest"])
+def test_a_model_of_a_measurement_sweeps_in_its_direction(own_fmu, direction):
+    """As `zspring frf` does; what is left of the transients tells the directions apart."""
+    frequency = np.array([4.0, 4.75, 5.5])
+    curve = Curve("2 m/s2", frequency, np.full(3, 2.0), np.ones(3))
+    with own_fmu.instances() as instances:
+        model = BenchModel(instances, direction, GO_ON)
+        ((answer,),) = model.receptances([{}], [curve])
+        ((again,),) = model.receptances([{}], [curve], [answer[1]])
+        model.close()
+    found = {}
+    for way in ("up", "down", "rest"):
+        settings = FrfSettings((2.0,), tuple(frequency), direction=way, tolerance=2e-4)
+        points = {point.frequency: point for point, _ in measure(own_fmu, settings, sweeps(settings), 1, GO_ON)}
+        found[way] = np.array([points[f].H for f in frequency])
+    np.testing.assert_array_equal(answer[0], found[direction])
+    np.testing.assert_array_equal(again[0], answer[0])
+    for way in found.keys() - {direction}:
+        assert 1e-9 < np.abs(answer[0] / found[way] - 1).max() < 5e-3
+
+
+# The bench outside the FMU
+
+
+class Recorder:
+    """An FMU with only a spring, F = -k z, that answers `lag` steps late; keeps targets and times."""
+
+    STIFFNESS = 5e3
+
+    def __init__(self, lag: int = 0, step: float = 0.002):
+        self._lag, self._step = lag, step
+        self.slave = self.variables = self
+        self.component, self.targets, self.calls = None, [], []
+
+    def parse_assignments(self, _assignments):
+        return {}
+
+    def __getitem__(self, name: str):
+        self.valueReference = {"head_displacement": 1, "contact.force": 2}[name]
+        return self
+
+    def start(self, _parameters) -> None:
+        self.targets.clear()
+        self.calls.clear()
+
+    def get(self, names):
+        return [self._step for _ in names]
+
+    refusals = contextlib.nullcontext
+
+    def fmi2SetReal(self, _component, references, _count, values) -> None:
+        assert references[0] == 1
+        self.targets.append(values[0])
+
+    def fmi2DoStep(self, _component, time, size, _flag) -> None:
+        self.calls.append((time, size))
+
+    def fmi2GetReal(self, _component, references, _count, values) -> None:
+        assert references[0] == 2
+        values[0] = -self.STIFFNESS * self.targets[-1 - self._lag] if len(self.targets) > self._lag else 0.0
+
+
+def quintic(x):
+    return 6 * x**5 - 15 * x**4 + 10 * x**3
+
+
+@pytest.mark.parametrize("lag", [0, 3])
+def test_the_outside_bench_starts_by_the_quintic_and_reads_magnitude_and_phase(lag):
+    """4.6 Hz in steps of at most 2 ms: 109 of them in a period. A late answer turns the phase ahead of -Z/F."""
+    recorder = Recorder(lag)
+    bench = InputBench(recorder, {})
+    bench.start(4.6, 3.0)
+    bench.run(4)
+    peak, x = 3.0 / (2 * np.pi * 4.6) ** 2, np.arange(1, 4 * 109 + 1) / 109
+    expected = peak * np.where(x < 1, quintic(x), 1) * np.sin(2 * np.pi * x)
+    np.testing.assert_allclose(recorder.targets, expected, atol=1e-12 * peak)
+    times, sizes = np.array(recorder.calls).T
+    np.testing.assert_allclose(sizes, 1 / (109 * 4.6))
+    np.testing.assert_allclose(times, (x - x[0]) / 4.6, atol=1e-12)
+    assert bench.periods == 3 and bench.change < 1e-12
+    assert bench.H == pytest.approx(np.exp(2j * np.pi * lag / 109) / Recorder.STIFFNESS, rel=1e-12)
+
+
+@pytest.mark.parametrize("frequency, acceleration, ramp", [(9.0, 2.0, 2), (2.0, 2.0, 1), (4.6, 8.0, 1), (15.3, 0.5, 3)])
+def test_the_outside_bench_goes_over_to_another_point_without_a_jump(frequency, acceleration, ramp):
+    """Frequency and peak follow the quintic over whole periods, about as long as one of the slower sine."""
+    recorder = Recorder()
+    bench = InputBench(recorder, {})
+    bench.start(4.6, 3.0)
+    bench.run(4)
+    before = len(recorder.targets)
+    bench.tune(frequency, acceleration)
+    assert (bench.H, bench.change, bench.periods) == (0, 1.0, 0)
+    bench.run(ramp + 2)
+    assert bench.periods == 2
+    found = np.array(recorder.targets[before:])
+    steps = len(found) // (ramp + 2)
+    assert steps == max(16, np.ceil(500 / frequency)) and len(found) == steps * (ramp + 2)
+    old, new = 3.0 / (2 * np.pi * 4.6) ** 2, acceleration / (2 * np.pi * frequency) ** 2
+    duration = ramp / frequency
+
+    def speed(t: float) -> float:
+        return 4.6 + (frequency - 4.6) * quintic(min(t / duration, 1.0))
+
+    for i in (0, steps // 3, steps, steps * ramp - 1, steps * ramp + 5, len(found) - 1):
+        t = (i + 1) / (steps * frequency)
+        turns = quad(speed, 0, min(t, duration))[0] + frequency * max(t - duration, 0)
+        peak = old + (new - old) * quintic(min(t / duration, 1.0))
+        assert found[i] == pytest.approx(peak * np.sin(2 * np.pi * turns), abs=1e-9 * max(old, new))
+    assert bench.H == pytest.approx(1 / Recorder.STIFFNESS)
+
+
+def test_the_outside_bench_looks_at_changes_between_periods():
+    """A spring that stiffens by a tenth from the third period on."""
+    recorder = Recorder()
+    bench = InputBench(recorder, {})
+    bench.start(4.0, 1.0)
+    bench.run(2)
+    assert (bench.periods, bench.change) == (1, 1.0)
+    recorder.STIFFNESS = 1.1 * Recorder.STIFFNESS
+    bench.run(1)
+    assert bench.periods == 2 and bench.change == pytest.approx(0.1, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", [FmuBench, InputBench])
+def test_a_bench_goes_on_from_a_saved_state_as_if_nothing_had_been(own_fmu, kind):
+    """The next point begins with the ramp from the last one, wherever that is done."""
+    with own_fmu.instances(2) as instances:
+        whole, broken = (kind(instance, {"solver.step": 2e-3}) for instance in instances)
+        whole.start(5.0, 4.0)
+        whole.run(3)
+        state = whole.save()
+        broken.load(state)
+        for bench in (whole, broken):
+            bench.tune(7.3, 2.0)
+            bench.run(5)
+        assert broken.H == whole.H != 0 and broken.change == whole.change and broken.save() == whole.save()
+
+
+# Peaks
+
+
+def test_peaks_of_parabolas_are_found_exactly_between_the_points():
+    """log|H| of two parabolas with a valley between them, on an uneven grid; phases do not matter."""
+    f = np.array([1.0, 1.2, 1.5, 1.9, 2.1, 2.6, 3.0, 3.2, 3.6, 3.75, 4.0, 4.4])
+
+    def level(f):
+        left, valley, right = -5 - (f - 1.6) ** 2, -6.3 + 0.5 * (f - 2.7) ** 2, -5.5 - 2 * (f - 3.8) ** 2
+        return np.where(f < 2.05, left, np.where(f < 3.5, valley, right))
+
+    peaks, valleys = extremes(f, np.exp(level(f)) * np.exp(1j * f))
+    np.testing.assert_allclose(peaks, [(1.6, np.exp(-5)), (3.8, np.exp(-5.5))], rtol=1e-9)
+    np.testing.assert_allclose(valleys, [(2.7, np.exp(-6.3))], rtol=1e-9)
+    maxima, minima = extremes(f, np.exp(-level(f)))
+    np.testing.assert_allclose(minima, [(1.6, np.exp(5)), (3.8, np.exp(5.5))], rtol=1e-9)
+    np.testing.assert_allclose(maxima, [(2.7, np.exp(6.3))], rtol=1e-9)
+
+
+@pytest.mark.parametrize("height, count", [(0.9 * LEAST_STEP, 1), (1.1 * LEAST_STEP, 2)])
+def test_ripple_is_no_resonance(height, count):
+    """A dent of that height on the flank beyond the peak, a level of log|H|."""
+    level = np.array([0.0, 1.0, 2.0, 1.5, 1.0, 0.5, 0.5 + height, 0.1, -1.0])
+    peaks, valleys = extremes(np.arange(9.0), np.exp(level))
+    assert len(peaks) == count and len(valleys) == count - 1
+    assert peaks[0][0] == pytest.approx(2.1666667)  # of the parabola through 1, 2, 1.5
+
+
+def test_missing_points_make_no_extreme():
+    H = np.exp(np.array([0.0, 1.0, np.nan, 1.0, 0.0]))
+    assert extremes(np.arange(5.0), H) == ([], [])
+
+
+@pytest.mark.parametrize("band, index", [((0.5, 20.0), 1), ((8.0, 20.0), 2), ((3.0, 8.0), 1)])
+def test_the_highest_resonance_is_looked_for_within_the_band(own_fmu, band, index):
+    """The published three-mass DSA-380 has peaks near 6.6 and 12.3 Hz, the first one much the higher."""
+    values = dict(PUBLISHED["DSA-380"])
+    linear = LinearPantograph(head=values.pop("k1"), **{**values, "c1": 30.0})
+    fine = np.arange(5.5, 14, 0.001)
+    magnitude = np.abs([linear.receptance(f) for f in fine])
+    tops = [i for i in range(1, len(fine) - 1) if magnitude[i - 1] < magnitude[i] > magnitude[i + 1]]
+    frequencies = tuple(np.arange(5.5, 14, 0.05).round(6).tolist())
+    quantity = FrfQuantity(FrfSettings((1.0,), frequencies, tolerance=1e-5), band)
+    assignments = ["suspension=Linear", "c1=30", "solver.step=2e-4"]
+    with own_fmu.instances() as (instance,):
+        found, problems = quantity.measure(instance, own_fmu.variables.parse_assignments(assignments))
+    assert not problems and len(tops) == 2
+    assert found["resonance 1 m/s2 [Hz]"] == pytest.approx(fine[tops[index - 1]], rel=1e-3)
+    assert found["peak 1 m/s2 [m/N]"] == pytest.approx(magnitude[tops[index - 1]], rel=5e-3)
+
+
+def test_a_band_without_a_peak_has_no_resonance(own_fmu):
+    quantity = FrfQuantity(FrfSettings((1.0,), (8.0, 9.0, 10.0, 11.0)), (8.0, 10.0))
+    with own_fmu.instances() as (instance,):
+        found, _ = quantity.measure(instance, {"suspension": 2})
+    assert np.isnan(found["resonance 1 m/s2 [Hz]"]) and np.isnan(found["peak 1 m/s2 [m/N]"])
+    assert "H_re 1 m/s2 11 Hz [m/N]" in found  # measured all the same
+
+
+# Kinds and phases
+
+UNITS = {  # derivatives of the displacement, factor to SI, whether force over motion
+    "m/N": (0, 1, False),
+    "mm/N": (0, 1e-3, False),
+    "um/N": (0, 1e-6, False),
+    "N/m": (0, 1, True),
+    "kN/m": (0, 1e3, True),
+    "N/mm": (0, 1e3, True),
+    "m/(N.s)": (1, 1, False),
+    "(m/s)/N": (1, 1, False),
+    "(mm/s)/N": (1, 1e-3, False),
+    "N.s/m": (1, 1, True),
+    "N/(m/s)": (1, 1, True),
+    "(m/s2)/N": (2, 1, False),
+    "1/kg": (2, 1, False),
+    "kg": (2, 1, True),
+    "N/(m/s2)": (2, 1, True),
+}
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_every_unit_of_a_response_comes_back_to_the_receptance(unit):
+    frequency, H = np.array([0.7, 5.0, 13.0]), np.array([3e-4 - 1e-4j, -1e-5 - 2e-4j, 4e-6 - 1e-7j])
+    derivatives, factor, inverse = UNITS[unit]
+    moved = H * (2j * np.pi * frequency) ** derivatives
+    value = (1 / moved if inverse else moved) / factor
+    np.testing.assert_allclose(response_of(unit).receptance(frequency, value), H, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "unit, power, factor",
+    [("m/s2", 0, 1), ("mm/s2", 0, 1e-3), ("m/s", 1, 1), ("mm/s", 1, 1e-3), ("m", 2, 1), ("mm", 2, 1e-3)],
+)
+def test_every_unit_of_an_amplitude_becomes_an_acceleration(unit, power, factor):
+    frequency = np.array([0.7, 5.0])
+    expected = 3 * factor * (2 * np.pi * frequency) ** power
+    np.testing.assert_allclose(acceleration_of(unit, frequency, np.array([3.0, 3.0])), expected, rtol=1e-12)
+
+
+def test_the_phase_is_cut_a_right_angle_beyond_where_a_driving_point_has_it():
+    """-180 to 0 deg for receptance, 0 to 180 deg for stiffness; a little noise does not throw it a turn away."""
+    for degrees in (-269.0, -180.5, -180.0, -179.5, -90.0, -0.5, 0.0, 0.5, 89.0):
+        value = 1e-4 * np.exp(1j * np.radians(degrees))
+        assert phase_degrees(value, "receptance") == pytest.approx(degrees, abs=1e-9)
+        assert phase_degrees(1 / value, "stiffness") == pytest.approx(-degrees, abs=1e-9)
+    both = np.array([1 - 1e-3j, -1 + 1e-3j])
+    np.testing.assert_allclose(phase_degrees(both, "receptance"), np.degrees([-1e-3, -np.pi - 1e-3]), atol=1e-6)
+    np.testing.assert_allclose(as_quantity(both, "stiffness") * both, 1)
+    assert as_quantity(both, "receptance") is both

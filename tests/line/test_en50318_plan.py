@@ -1,0 +1,151 @@
+"""Which runs the validation makes, span by span and choice by choice, and what a line's report looks at."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from zspring.couple.report import evaluated, summary
+from zspring.en50318.edition import packaged_edition, read_edition
+from zspring.en50318.plan import CHOICES, HEADS, Run, head_runs, reference_runs, section_of, sensitivity_runs, slug
+from zspring.errors import ZSpringError
+from zspring.fmu import CATENARY, Fmu, installed_fmu
+from zspring.line.journey import LineExtent
+from zspring.line.result import LineResult
+from zspring.line.statistics import Section
+
+
+@pytest.fixture(scope="module")
+def fmus():
+    with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
+        yield catenary, pantograph
+
+
+@pytest.fixture(scope="module")
+def references(fmus) -> list[Run]:
+    return reference_runs(read_edition(packaged_edition("en-50318-2002")), *fmus)
+
+
+def test_the_reference_runs_are_the_cases_of_the_edition(references):
+    assert [(run.label, run.speed, run.group, run.of) for run in references] == [
+        ("250 km/h", 250, "reference", "EN 50318:2002"),
+        ("300 km/h", 300, "reference", "EN 50318:2002"),
+    ]
+    for run in references:
+        assert run.section == Section(5, 6, 60.0) and run.section.bounds == (240.0, 360.0)
+        assert run.pantograph["static_force"] == 120 and run.line["contact_wire.tension"] == 20000
+        assert (run.uplift, run.step, run.scheme, run.start_up, run.start) == (0, 1e-3, "implicit", "ramp", None)
+    assert [run.series for run in references] == [f"en-50318-2002-{v}-km-h.csv" for v in (250, 300)]
+
+
+def test_each_choice_changes_what_it_names_and_nothing_else(references):
+    runs = sensitivity_runs(references)
+    assert len(runs) == 2 * len(CHOICES) == len({run.key for run in runs})
+    named = ("group", "label", "of", "series")
+    for reference, own in ((references[0], runs[: len(CHOICES)]), (references[1], runs[len(CHOICES) :])):
+        for run, choice in zip(own, CHOICES):
+            assert (run.group, run.label, run.series) == ("sensitivity", choice.label, "")
+            assert run.of == f"EN 50318:2002, {reference.label}"
+            changed = {n for n, value in run.line.items() if reference.line.get(n) != value}
+            assert (
+                changed == {n for n, v in choice.line.items() if reference.line.get(n) != v} != set() or not choice.line
+            )
+            for name, value in choice.line.items():
+                assert run.line[name] == value
+            for name, value in choice.run.items():
+                assert getattr(run, name) == value != getattr(reference, name)
+            spans = choice.spans or (5, 6)
+            assert run.section == Section(*spans, 60.0)
+            left = {name: getattr(reference, name) for name in (*named, "line", "section", *choice.run)}
+            assert replace(run, **left) == reference
+
+
+def test_anything_that_changes_the_numbers_changes_the_key(references):
+    run = references[0]
+    others = [
+        replace(run, speed=251.0),
+        replace(run, uplift=1.0),
+        replace(run, step=2e-3),
+        replace(run, section=Section(4, 6, 60.0)),
+        replace(run, line={**run.line, "gravity": 9.8}),
+        replace(run, pantograph={**run.pantograph, "m1": 7.0}),
+    ]
+    assert len({run.key, *(other.key for other in others)}) == 7
+    assert replace(run).key == run.key
+
+
+def test_all_heads_run_with_the_mean_force_of_the_law_at_each_speed(fmus):
+    """70 N at a stand, and 0.00097 v^2 more from the uplift; the forces are kept of the last speed alone."""
+    runs = head_runs(*fmus, (200.0, 275.0))
+    assert [(run.speed, run.label) for run in runs] == [(v, head[0]) for v in (200, 275) for head in HEADS]
+    for run in runs:
+        assert run.pantograph["static_force"] == 70
+        assert run.uplift == pytest.approx(0.00097 * run.speed**2)
+        assert (run.group, run.of, run.section) == ("heads", "benchmark-2015", Section(4, 7, 55.0))
+        assert bool(run.series) == (run.speed == 275)
+    kept = [run.series for run in head_runs(*fmus, (300.0, 350.0)) if run.series]
+    assert len(kept) == len(HEADS) and all(name.endswith("-300-km-h.csv") for name in kept)
+    laws = [(run.pantograph["suspension"], run.pantograph.get("friction")) for run in runs[:4]]
+    assert laws[0][0] == 2 and laws[1] == (1, 1) and laws[2] == (1, 2) and laws[3][0] == 4
+
+
+@pytest.mark.parametrize("spans, fits", [((2, 9), True), ((2, 2), True), ((1, 2), False), ((8, 10), False)])
+def test_the_first_and_the_last_span_of_a_line_are_not_evaluated(fmus, spans, fits):
+    case = read_edition(packaged_edition("en-50318-2002")).cases[0]
+    case = case.model_copy(update={"first_span": spans[0], "last_span": spans[1]})
+    if fits:
+        assert section_of(case, fmus[0], {"line.spans": 10}) == Section(*spans, 60.0)
+    else:
+        with pytest.raises(ZSpringError, match=rf"spans {spans[0]} to {spans[1]}: must be in 2 \.\. 9"):
+            section_of(case, fmus[0], {"line.spans": 10})
+
+
+def test_names_of_files_are_plain():
+    assert slug("EN 50318:2002, 250 km/h") == "en-50318-2002-250-km-h"
+
+
+# Of one run along a line
+
+
+def passage(begin: float, end: float, second: float = 0.0) -> LineResult:
+    """Two pantographs at 50 m/s with constant forces of 100 and 110 N, the second one `second` m behind."""
+    time = np.arange(round((end - begin) / 0.05) + 1) / 1000
+    position = begin + 50 * time[:, None] - [0.0, second]
+    forces = np.broadcast_to([100.0, 110.0], position.shape)
+    height = 0.01 * np.sin(np.pi * position / 50)  # 20 mm from peak to peak in each two spans
+    uplift = np.full((len(time), 2), 0.033)
+    moments = np.zeros((*position.shape, 2))
+    return LineResult(
+        time, position, forces, height, height, np.array([50.0, 100.0]), uplift, time * 0, moments, {}, 1.0
+    )
+
+
+@pytest.mark.parametrize("spans, middle", [(4, (2, 3)), (5, (3, 3)), (6, (3, 4)), (7, (4, 4))])
+def test_the_middle_spans_are_evaluated(spans, middle):
+    result = passage(0.0, 50.0 * spans)
+    assert evaluated(result, 0, LineExtent(spans, 50.0)) == Section(*middle, 50.0)
+
+
+def test_a_pantograph_that_has_not_run_through_the_middle_after_a_span_of_start_up_is_evaluated_whole():
+    line = LineExtent(6, 50.0)  # the middle is from 100 to 200 m
+    for begin, end, second, first, other in (
+        (40.0, 210.0, 0.0, True, True),
+        (50.0, 200.0, 0.0, True, True),
+        (51.0, 210.0, 0.0, False, False),
+        (40.0, 199.0, 0.0, False, False),
+        (40.0, 210.0, 20.0, True, False),
+    ):
+        result = passage(begin, end, second)
+        assert [bool(evaluated(result, i, line)) for i in (0, 1)] == [first, other]
+
+
+def test_the_summary_has_the_figures_of_each_pantograph():
+    lines = summary(passage(40.0, 210.0, 20.0), LineExtent(6, 50.0))
+    assert lines[0] == "0-20 Hz, over spans 3 to 4, 100 to 200 m and the whole run"
+    rows = {line[:27].strip(): line[27:].split() for line in lines[1:]}
+    assert rows["mean force"] == ["100.0", "110.0", "N"]
+    assert rows["largest uplift at a support"] == ["33.0", "33.0", "mm"]
+    assert rows["loss of contact"] == ["0.00", "0.00", "%"]
+    assert rows["range of the contact point"] == ["20.0", "20.0", "mm"]

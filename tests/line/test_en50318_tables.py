@@ -1,0 +1,229 @@
+"""Tables and verdicts of the report on given figures: just inside and just outside of every limit."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from zspring.bench.measured import Curve
+from zspring.en50318 import report
+from zspring.en50318.edition import Edition, judge
+from zspring.en50318.frf import FrfComparison, band_errors
+from zspring.en50318.own_data import OwnData, agreement_chapter, figures_table, series_chapter
+from zspring.en50318.page import BAD, GOOD, Cell, Table
+from zspring.line.series import Series
+from zspring.line.statistics import FIGURES, Section
+
+FOUND = {
+    "mean_force": 100.0,
+    "standard_deviation": 29.0,
+    "standard_deviation_0_5": 12.0,
+    "standard_deviation_5_20": 25.04,
+    "statistical_maximum": 187.06,
+    "statistical_minimum": 13.0,
+    "actual_maximum": 170.0,
+    "actual_minimum": 5.0,
+    "support_uplift": 55.0,
+    "contact_point_range": 80.0,
+    "loss_of_contact": 0.126,
+    "losses": 2.0,
+    "longest_loss": 7.0,
+}
+EDITION = Edition(
+    "X", "a  book", (), dict.fromkeys(("standard_deviation", "support_uplift", "contact_point_range"), 20.0)
+)
+
+
+def rows_of(table: Table) -> dict[str, list[Cell]]:
+    """Cells of each row behind its head."""
+    return {first.text: rest for first, *rest in table.cells}
+
+
+def texts(cells: list[Cell]) -> list[str]:
+    return [cell.text for cell in cells]
+
+
+@pytest.mark.parametrize(
+    "value, said, look",
+    [
+        (26.0, "inside", GOOD),
+        (31.0, "inside", GOOD),
+        (25.99, "outside by -0.01", BAD),
+        (31.01, "outside by +0.01", BAD),
+        (math.nan, "not known", ""),
+    ],
+)
+def test_a_figure_is_judged_at_the_ends_of_its_range(value, said, look):
+    found = {**FOUND, "standard_deviation": value}
+    judged = judge(found, {"standard_deviation": (26.0, 31.0)})
+    row = rows_of(report.case_table(found, judged, 250.0, "x"))["standard deviation, 0-20 Hz, N"]
+    shown = "-" if math.isnan(value) else f"{value:.1f}"
+    assert texts(row) == [shown, "26 to 31", said] and row[-1].look == look
+
+
+@pytest.mark.parametrize("deviation, said", [(30.0, "inside"), (30.001, "outside"), (1.0, "inside"), (59.0, "outside")])
+def test_the_deviations_share_of_the_mean_is_judged_at_three_tenths(deviation, said):
+    found = {**FOUND, "standard_deviation": deviation}
+    table = report.case_table(found, judge(found, {"mean_force": (90, 110)}), 250.0, "x")
+    (label,) = (row for row in rows_of(table) if row.startswith("standard deviation / mean force"))
+    assert label.endswith("at most 0.3")
+    row = rows_of(table)[label]
+    assert texts(row) == [f"{deviation / 100:.3f}", "", said] and row[-1].look == {"inside": GOOD, "outside": BAD}[said]
+
+
+@pytest.mark.parametrize("mean", [0.0, -100.0])
+def test_a_force_that_does_not_press_at_all_has_no_good_share(mean):
+    found = {**FOUND, "mean_force": mean}
+    rows = rows_of(report.case_table(found, judge(found, {"mean_force": (90, 110)}), 250.0, "x"))
+    assert texts(rows["standard deviation / mean force, at most 0.3"]) == ["inf", "", "outside"]
+
+
+def test_a_table_without_ranges_judges_nothing_and_has_every_figure():
+    """The target mean force of AC lines is 0.00097 v^2 + 70 N, 130.6 N at 250 km/h."""
+    table = report.case_table(FOUND, [], 250.0, "x")
+    rows = rows_of(table)
+    assert list(table.header) == ["", "found"] and {len(row) for row in rows.values()} == {1}
+    assert len(rows) == len(FIGURES) + 2
+    assert texts(rows["target mean force of AC lines, N"]) == ["130.6"]
+    assert texts(rows["loss of contact, %"]) == ["0.13"] and texts(rows["number of losses of contact"]) == ["2"]
+    assert "target mean force of AC lines, N" not in rows_of(report.case_table(FOUND, [], None, "x"))
+
+
+def test_verdicts_count_and_name_what_is_outside():
+    ranges = {"mean_force": (90.0, 110.0), "actual_minimum": (10.0, 20.0), "actual_maximum": (100.0, 150.0)}
+    judged = {"slow": judge(FOUND, {"mean_force": (90.0, 110.0)}), "fast": judge(FOUND, ranges)}
+    assert report.verdict("X", judged) == (
+        "X: 2 of 4 figures are outside their accepted ranges: actual minimum at fast by -5 N, "
+        "actual maximum at fast by +20 N"
+    )
+    assert report.verdict("X", {"slow": judged["slow"]}) == "X: all 1 figures are inside their accepted ranges"
+    unknown = judge({**FOUND, "mean_force": math.nan}, ranges)
+    assert "X: 2 of 2 figures are outside" in report.verdict("X", {"fast": unknown})
+
+
+def test_departures_count_choices_not_figures():
+    """Of three choices one has two figures outside, one has one, one has none; the other case none of one."""
+    ranges = {"mean_force": (90.0, 110.0), "actual_minimum": (0.0, 20.0)}
+
+    def choice(mean: float, minimum: float):
+        return judge({**FOUND, "mean_force": mean, "actual_minimum": minimum}, ranges)
+
+    judged = {"slow": {"a": choice(120, -3), "b": choice(100, 21), "c": choice(90, 0)}, "fast": {"a": choice(100, 5)}}
+    assert report.departures(judged).endswith("accepted range: 2 of 3 at slow, 0 of 1 at fast")
+
+
+def test_the_sensitivity_marks_only_what_is_outside():
+    other = {**FOUND, "mean_force": 111.0}
+    ranges = {"mean_force": (90.0, 110.0), "actual_minimum": (0.0, 5.0)}
+    judged = {"reference": judge(FOUND, ranges), "b": judge(other, ranges)}
+    table = report.sensitivity_table(FOUND, {"b": other}, judged, "x")
+    rows = rows_of(table)
+    marked = {(name, table.header[i + 1]) for name, row in rows.items() for i, cell in enumerate(row) if cell.look}
+    assert marked == {("b", "mean force, N")}
+    assert texts(rows["reference"])[0] == "100.0" and texts(rows["b"])[0] == "111.0"
+
+
+def test_spans_and_heads_stand_beside_each_other_in_order():
+    other = {**FOUND, "mean_force": 90.0}
+    table = report.spans_table(FOUND, {"span 5": other, "span 6": FOUND}, "x")
+    assert list(table.header) == ["", "span 5", "span 6", "all"]
+    assert texts(rows_of(table)["mean force, N"]) == ["90.0", "100.0", "100.0"]
+    table = report.heads_table(
+        {"linear": {200.0: FOUND, 250.0: other}, "free": {200.0: other, 250.0: FOUND}}, "mean_force"
+    )
+    assert list(table.header) == ["", "200 km/h", "250 km/h"] and table.caption == "mean force, N"
+    assert texts(rows_of(table)["linear"]) == ["100.0", "90.0"] and texts(rows_of(table)["free"]) == ["90.0", "100.0"]
+
+
+# Simulation against line test
+
+
+@pytest.mark.parametrize(
+    "factor, difference, said",
+    [
+        (1.199, "+19.9 %", "inside"),
+        (0.801, "-19.9 %", "inside"),
+        (1.21, "+21.0 %", "outside by +1"),
+        (0.79, "-21.0 %", "outside by -1"),
+    ],
+)
+def test_a_difference_is_judged_in_percent_of_the_line_test(factor, difference, said):
+    simulated = {**FOUND, "support_uplift": factor * FOUND["support_uplift"]}
+    chapter = agreement_chapter(simulated, FOUND, EDITION)
+    (table,) = (block for block in chapter.blocks if isinstance(block, Table))
+    rows = rows_of(table)
+    assert texts(rows["largest uplift at a support, mm"])[2:] == [difference, "± 20 %", said]
+    assert texts(rows["mean force, N"]) == ["100.0", "100.0", "", "", ""]
+    sentence = chapter.blocks[1]
+    if said == "inside":
+        assert sentence == "Simulation against line test: all 3 figures are inside their accepted ranges."
+    else:
+        assert "1 of 3 figures are outside their accepted ranges: largest uplift at a support" in sentence
+        assert sentence.endswith(f"by {said.removeprefix('outside by ')} %.")
+
+
+@pytest.mark.parametrize("whose", ["simulated", "measured"])
+@pytest.mark.parametrize("value", [0.0, math.nan])
+def test_what_the_line_test_has_as_nothing_is_not_judged(whose, value):
+    """Nor what one of both does not tell; a 0 of the simulation is 100 % too little."""
+    given = {"simulated": dict(FOUND), "measured": dict(FOUND)}
+    given[whose]["support_uplift"] = value
+    chapter = agreement_chapter(given["simulated"], given["measured"], EDITION)
+    (table,) = (block for block in chapter.blocks if isinstance(block, Table))
+    judged = texts(rows_of(table)["largest uplift at a support, mm"])[2:]
+    if whose == "simulated" and value == 0.0:
+        assert judged == ["-100.0 %", "± 20 %", "outside by -80"]
+    else:
+        assert judged == ["", "", ""] and "all 2 figures are inside" in chapter.blocks[1]
+
+
+def test_series_are_shown_side_by_side_with_dashes_for_what_they_do_not_tell():
+    table = figures_table({"a": FOUND, "b": {**FOUND, "support_uplift": math.nan, "mean_force": 101.25}}, "x")
+    rows = rows_of(table)
+    assert list(table.header) == ["", "a", "b"]
+    assert texts(rows["largest uplift at a support, mm"]) == ["55.0", "-"]
+    assert texts(rows["mean force, N"]) == ["100.0", "101.2"]
+
+
+@pytest.mark.parametrize("first, last, tables", [(2, 3, 2), (2, 2, 1)])
+def test_a_series_is_told_span_by_span_where_there_are_several(first, last, tables):
+    time = np.arange(4001) / 1000
+    force = np.where(time < 2, 100.0, 120.0)  # span 2 from 1 to 2 s, span 3 from 2 to 3 s
+    series = Series("mine", time, force, 50 * time)
+    chapter = series_chapter(series, Section(first, last, 50.0), None, "Contact force")
+    found = [block for block in chapter.blocks if isinstance(block, Table)]
+    assert len(found) == tables
+    assert chapter.blocks[0] == "mine: 4001 samples, one each 1 ms."
+    assert texts(rows_of(found[0])["target mean force of AC lines, N"]) == ["101.4"]  # 180 km/h
+    if tables == 2:
+        means = [float(text) for text in texts(rows_of(found[1])["mean force, N"])]
+        assert list(found[1].header) == ["", "span 2", "span 3", "all"]
+        assert means == pytest.approx([100, 120, 110], abs=0.5)
+
+
+def test_the_spans_asked_for_go_before_those_of_the_case():
+    data = OwnData(Path("a"), None, EDITION, None, None, (3, 4), 65.0, 10.0, 1)
+    assert data.section(None, None) == Section(3, 4, 65.0, 10.0)
+    assert Section(3, 4, 65.0, 10.0).bounds == (140.0, 270.0)
+    whole = OwnData(Path("a"), None, EDITION, None, None, None, 65.0, 10.0, 1)
+    assert whole.section(None, None) is None
+
+
+# Frequency responses
+
+
+def test_errors_of_a_response_are_in_percent_and_degrees_with_their_signs():
+    """Magnitude +3, -4 % in the first band: mean -0.5, rms 3.5 %; phase 1, -2 deg: mean -0.5, rms 1.6 deg.
+
+    A point at the edge between two bands belongs to the upper one, the last edge to the last band.
+    """
+    frequency, H = np.array([1.0, 2.0, 5.0, 20.0]), np.full(4, 1e-4 - 1e-5j)
+    off = np.array([1.03, 0.96, 1.10, 0.95]) * np.exp(1j * np.radians([1, -2, 5, 0]))
+    curve = Curve("1 m/s2", frequency, np.ones(4), H)
+    comparison = FrfComparison(curve, H * off, band_errors(curve, H * off, (1.0, 5.0, 20.0)))
+    low, high = (texts(row) for row in report.frf_table([comparison]).cells)
+    assert low == ["1 m/s2", "1 to 5 Hz", "2", "-0.5 %", "-4.0 %", "3.5 %", "-0.5 deg", "-2.0 deg", "1.6 deg"]
+    assert high == ["1 m/s2", "5 to 20 Hz", "2", "+2.5 %", "+10.0 %", "7.9 %", "+2.5 deg", "+5.0 deg", "3.5 deg"]
