@@ -56,14 +56,10 @@ def linear_problem(
     free: dict[str, tuple[float, float, float]], truth: dict[str, float], frequency: np.ndarray, H: np.ndarray
 ) -> Problem:
     """Logarithmic error; start, minimum and maximum of the free parameters, the others as in `truth`."""
-    settings = Settings(
-        path=Path("fit.toml"),
+    settings = Settings.model_construct(  # unchecked, as the curves come from no file
         model="linear",
-        sources=(),
-        free=tuple(Free(name, *bounds) for name, bounds in free.items()),
+        free={name: Free(start=start, min=low, max=high) for name, (start, low, high) in free.items()},
         fixed={name: value for name, value in truth.items() if name not in free},
-        tied={},
-        search=Search(0),
     )
     curves = [Curve("0.25 m/s2", frequency, np.full(frequency.shape, 0.25), H)]
     rods = {"zspring.J1": 0.0, "zspring.J2": 0.0}
@@ -156,7 +152,7 @@ def test_the_search_finds_what_least_squares_alone_miss(tmp_path):
     problem = linear_problem(free, values, frequency, H)
     assert solve(problem).cost > 1
     with cost_record(tmp_path / "record.csv", {}, ["k1", "k2"]) as record:
-        x = search(problem, Search(40), record, threading.Event(), lambda generation, cost: None)
+        x = search(problem, Search(generations=40), record, threading.Event(), lambda generation, cost: None)
     found = fit(problem, x, lambda cost: None)
     np.testing.assert_allclose(found.values, [values["k1"], values["k2"]], rtol=1e-6)
 
@@ -279,15 +275,15 @@ def test_ctrl_c_in_the_last_jacobian_writes_nothing_and_keeps_the_search(tmp_pat
             os.kill(os.getpid(), signal.SIGINT)
         return calls[-1]
 
-    out = tmp_path / "out"
+    path, out = tmp_path / "fit.toml", tmp_path / "out"
     with Fmu() as model:
-        settings = read_settings(tmp_path / "fit.toml", model)
+        settings = read_settings(path, model)
         with monkeypatch.context() as patched:
             patched.setattr(run, "fit", fit_until_ctrl_c)
             with pytest.raises(Interrupted, match="the same command goes on after the global search"):
-                run.identify(model, settings, out, "png", JOBS)
+                run.identify(model, settings, path, out, "png", JOBS)
         assert sorted(path.name for path in out.iterdir()) == ["identify.log", "search.partial.csv"]
-        run.identify(model, settings, out, "png", JOBS)
+        run.identify(model, settings, path, out, "png", JOBS)
     assert (out / "fitted.ssv").exists() and not (out / "search.partial.csv").exists()
 
 
@@ -295,14 +291,10 @@ def test_a_candidate_that_cannot_be_simulated_costs_a_penalty_and_no_more(fmu):
     """Without weight and force an l0 longer than the gap between the rods leaves the spring slack."""
     frequency = np.array([3.0, 6.0])
     curves = [Curve("1 m/s2", frequency, np.ones(2), np.array([1e-4 - 1e-4j, 2e-4 - 1e-4j]))]
-    settings = Settings(
-        path=Path("fit.toml"),
+    settings = Settings.model_construct(
         model="zspring",
-        sources=(),
-        free=(Free("zspring.l0", 0.017, 0.01, 0.1),),
+        free={"zspring.l0": Free(start=0.017, min=0.01, max=0.1)},
         fixed={"gravity": 0.0, "static_force": 0.0},
-        tied={},
-        search=Search(0),
     )
     with Fmu() as model, model.instances(1) as instances:
         bench = BenchModel(instances, "up", threading.Event())

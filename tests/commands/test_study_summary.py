@@ -29,7 +29,8 @@ from zspring.study.report import (
 )
 from zspring.study.settings import Range, StudySettings
 
-TWO = StudySettings("sobol", 8, 1, {"m1": Range(1, 2), "m2": Range(1, 2)}, {}, (StaticQuantity((0.01,)),))
+RANGE = Range.model_validate({"from": 1, "to": 2})
+TWO = StudySettings("sobol", 8, 1, {"m1": RANGE, "m2": RANGE}, {}, (StaticQuantity((0.01,)),))
 BLOCK = 4  # cases of two parameters
 
 

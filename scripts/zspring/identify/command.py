@@ -60,4 +60,4 @@ def identify(settings_path, example, parameter_set, assignments, output, jobs, s
         settings = read_settings(settings_path, fmu, parameter_set, assignments)
         folder = output or Path("results") / f"identify-{settings_path.stem}"
         with claimed(folder):
-            run_identification(fmu, settings, folder, suffix, jobs)
+            run_identification(fmu, settings, settings_path, folder, suffix, jobs)

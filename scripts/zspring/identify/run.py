@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import sys
 import time
-from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -36,9 +35,10 @@ from .settings import LINEAR_PARAMETERS, Settings
 OTHER_PARAMETERS = ("drive", "bench.", "contact.", "solver.")
 
 
-def identify(fmu: Fmu, settings: Settings, folder: Path, suffix: str, jobs: int) -> None:
+def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str, jobs: int) -> None:
     """Fit, going on where an interrupted search in the folder stopped; write and print all results.
 
+    path        of the settings, for the log
     suffix      of the figures, "png" or "svg"
     jobs        number of amplitudes measured at a time
     Raises ZSpringError for bad data, FmuError when the FMU refuses the start values, Interrupted after
@@ -67,7 +67,7 @@ def identify(fmu: Fmu, settings: Settings, folder: Path, suffix: str, jobs: int)
                 model = ZSpringModel(bench, curves, static)
             problem = Problem(settings, model, curves, static)
             bench.check(settings.parameters(problem.start))
-            log.write(f"settings {settings.path}:\n{settings.text}")
+            log.write(f"settings {path}:\n{path.read_text(encoding='utf-8')}")
             begin = time.perf_counter()
             x = problem.start
             if settings.search.generations:
@@ -112,10 +112,10 @@ def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[
     files = [*(source.path for source in settings.sources), *([settings.static.path] if settings.static else [])]
     head = {
         "FMU": fmu.sha256,
-        "settings": repr(replace(settings, text="")),
+        "settings": repr(settings),
         **{f"file {i}": f"{hashlib.sha256(path.read_bytes()).hexdigest()} {path}" for i, path in enumerate(files, 1)},
     }
-    record = cost_record(folder / "search.partial.csv", head, [free.name for free in settings.free])
+    record = cost_record(folder / "search.partial.csv", head, list(settings.free))
     if record.results:
         print(f"going on after {len(record.results)} candidates in {record.path}")
     with record, tqdm(total=settings.search.generations, desc="search", unit=" generations", disable=None) as bar:
@@ -167,12 +167,12 @@ def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Valu
     else:
         names = [name for name in values if not name.startswith(OTHER_PARAMETERS) and name != "k1"]
     remarks = {
-        free.name: "identified, at its bound"
+        name: "identified, at its bound"
         if result.at_bound[i]
         else f"identified, standard error {result.standard_error[i]:.2g}"
-        for i, free in enumerate(settings.free)
+        for i, name in enumerate(settings.free)
     }
-    remarks |= {name: f"tied to {to}" for name, (to, _) in settings.tied.items()}
+    remarks |= {name: f"tied to {tie.to}" for name, tie in settings.tied.items()}
     files = ", ".join(source.path.name for source in settings.sources)
     date = datetime.now(timezone.utc).strftime("%Y-%m-%d")
     description = f"Identified from {files} on {date}, {settings.model} model; see {path.parent.name}/identify.log"
