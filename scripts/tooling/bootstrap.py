@@ -36,36 +36,19 @@ PROBES = PROBES_BUILD / "bin"
 BROWSER = ROOT / "tests" / "browser"
 ZIG = "python-zig c++"  # from the package ziglang, for systems without a C++ compiler
 
+DESCRIPTIONS = ["modelDescription.xml", "modelDescription.catenary.xml"]
+PROBE_SOURCES = [*DESCRIPTIONS, "CMakeLists.txt", "fmu_src", "tests/native"]
 PACKAGE_SOURCES = [
+    *DESCRIPTIONS,
     "CMakeLists.txt",
     "LICENSE",
     "README.md",
-    "modelDescription.xml",
-    "modelDescription.catenary.xml",
     "pyproject.toml",
     "fmu_src",
     "resources",
     "scripts/zspring",
 ]
-PROBE_SOURCES = ["CMakeLists.txt", "modelDescription.xml", "modelDescription.catenary.xml", "fmu_src", "tests/native"]
 RESEARCH = "scripts/research"
-
-# Prints the requirements in pyproject.toml, one a line; runs in .venv, whose pip has tomli for Python 3.10.
-READ_REQUIREMENTS = """
-import sys
-try:
-    import tomllib
-except ModuleNotFoundError:
-    from pip._vendor import tomli as tomllib
-with open(sys.argv[1], "rb") as file:
-    table = tomllib.load(file)
-if sys.argv[2:] == ["extras"]:
-    groups = table["project"]["optional-dependencies"].values()
-else:
-    groups = [table["build-system"]["requires"], table["project"]["dependencies"]]
-    groups += [table["dependency-groups"][name] for name in sys.argv[2:]]
-print("\\n".join(requirement for group in groups for requirement in group))
-"""
 
 
 def environment() -> dict[str, str]:
@@ -151,7 +134,7 @@ def make_environment(runner: Runner, keep: bool) -> str:
 def install_requirements(runner: Runner, *groups: str) -> None:
     """Install what pyproject.toml requires: always and in these dependency groups, or all "extras"."""
     listing = subprocess.run(
-        [PYTHON, "-c", READ_REQUIREMENTS, ROOT / "pyproject.toml", *groups],
+        [PYTHON, TOOLING / "requirements.py", ROOT / "pyproject.toml", *groups],
         env=environment(),
         check=True,
         capture_output=True,

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from zspring.bench.measured import Curve
+from zspring.bench.curves import Curve
 from zspring.bench.static_test import StaticTest
 from zspring.fmu import Fmu
 from zspring.identify.fit import Fit, statistics

@@ -141,7 +141,7 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, speed, jobs
             plan = Plan(editions, not (quick or edition_path), speeds)
             validate(plan, catenary, fmu, output, jobs)
             return
-        from ..bench.measured import Source
+        from ..bench.curves import Source
         from .own_data import OwnData, report_on
 
         source = frf and Source(frf, given["frf_amplitude"], given["frf_force"], given["fixture_mass"])
