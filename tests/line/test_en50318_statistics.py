@@ -139,7 +139,20 @@ def test_spans_outside_the_line_are_refused():
         statistics(without, MIDDLE)
 
 
-@pytest.mark.parametrize(("count", "step", "message"), [(100, 1e-3, "too short"), (1000, 0.03, "sample step")])
+@pytest.mark.parametrize(
+    ("count", "step", "message"),
+    [
+        (100, 1e-3, "too short"),
+        (249, 1e-3, "0.249 s are too short for 20 Hz: at least 0.25 s"),
+        (1000, 0.03, "sample step"),
+        (1000, 0.02, "sample step 0.02 s: must be below 0.02 s"),
+    ],
+)
 def test_the_filter_refuses_what_it_cannot_filter(count, step, message):
     with pytest.raises(ZSpringError, match=message):
         low_pass(np.ones(count), step)
+
+
+@pytest.mark.parametrize(("count", "step"), [(250, 1e-3), (1000, 0.0199)])
+def test_the_filter_takes_what_is_just_enough(count, step):
+    assert low_pass(np.full(count, 7.0), step) == pytest.approx(np.full(count, 7.0))
