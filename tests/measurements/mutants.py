@@ -131,7 +131,7 @@ def python_variants(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
             yield node, ast.unparse(ast.fix_missing_locations(swapped))
         case ast.Expr(value=ast.Call()) | ast.Raise():
             yield node, "pass"
-        case ast.Return() if node.value is not None:
+        case ast.Return() if node.value and ast.unparse(node.value) != "None":
             yield node, "return None"
 
 
