@@ -153,7 +153,7 @@ def drawn(only: str, count: int, seed: int) -> list[Fault]:
         name = path.relative_to(ROOT).as_posix()
         if fnmatch(name, only) and not any(fnmatch(name, pattern) for pattern in LEFT_OUT):
             text, places = path.read_text("utf-8"), python_faults if name.endswith(".py") else cpp_faults
-            faults += [Fault(name, text, *place) for place in places(text)]
+            faults += [Fault(name, text, *place) for place in places(text) if text[place[0] : place[1]] != place[2]]
     return random.Random(seed).sample(faults, min(count, len(faults)))
 
 
