@@ -113,6 +113,14 @@ def test_each_span_is_evaluated_for_itself():
     assert statistics(force, MIDDLE)["mean_force"] == pytest.approx(145, abs=0.1)
 
 
+def test_a_section_may_be_all_of_the_series_but_no_more():
+    force = series(lambda t: 100.0 + 10 * (t >= 9))  # the tenth span of 70 m alone
+    assert statistics(force, Section(1, 10, 70.0))["mean_force"] == pytest.approx(101, abs=0.2)
+    for section in Section(1, 10, 70.0, start=-0.01), Section(1, 10, 70.0, start=0.01):
+        with pytest.raises(ZSpringError, match="the series has 0 to 700 m"):
+            statistics(force, section)
+
+
 def test_uplift_is_that_of_supports_in_the_section_and_its_ends():
     time = np.arange(10001) / 1000
     peaks = {"a": 0.090, "b": 0.040, "c": 0.055, "d": 0.080}
