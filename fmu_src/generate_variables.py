@@ -1,10 +1,12 @@
 """Makes the C++ table of variables and the final model description from a model description.
 
-    python generate_variables.py modelDescription.xml OUT_DIR
+    python generate_variables.py MODEL_DESCRIPTION OUT_DIR
 
-writes OUT_DIR/variables.inc and OUT_DIR/modelDescription.xml. The GUID is a hash of the source XML, so that a
-library never meets a description it was not built from. Errors in the XML that the compiler would not see
-(value references that are not 0, 1, 2, ..., a start outside its bounds) stop the build with one line.
+writes OUT_DIR/variables.inc and OUT_DIR/modelDescription.xml. The lists of its ModelStructure are made from what each
+output and calculated parameter declares in the attribute initialDependencies, which is no part of FMI and is left
+out. The GUID is a hash of the source XML, so that a library never meets a description it was not built from. Errors
+in the XML that the compiler would not see (value references that are not 0, 1, 2, ..., a start outside its bounds,
+dependencies that are not declared or name no variable) stop the build with one line.
 """
 
 import re
@@ -14,6 +16,11 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 UNBOUNDED = "HUGE_VAL"
+DECLARED = "initialDependencies"
+
+
+def refuse(message):
+    sys.exit(f"model description: {message}")
 
 
 def enumerations(root):
@@ -28,18 +35,24 @@ def identifier_and_index(name):
     """C++ identifier shared by the elements of an array, and the element's place from 0: "a[2].b" is (a_dot_b, 1)."""
     parts = re.fullmatch(r"([^\[\]]*)(?:\[(\d+)\]([^\[\]]*))?", name)
     if not parts:
-        sys.exit(f"modelDescription.xml: {name}: only arrays of one dimension are supported")
+        refuse(f"{name}: only arrays of one dimension are supported")
     head, index, tail = parts.groups(default="")
     return (head + tail).replace(".", "_dot_"), int(index or 1) - 1
 
 
+def causality(variable):
+    """As an enumerator of C++."""
+    name = variable.get("causality")
+    return name[0].upper() + name[1:]
+
+
 def row(index, variable, enums):
-    """One X(...) line of the table, its columns as in the heading that main writes."""
+    """A row of the table of variables but for the last column, as in the heading that `table` writes."""
     name = variable.get("name")
     identifier, element = identifier_and_index(name)
     value = variable[0]
     if variable.get("valueReference") != str(index):
-        sys.exit(f"modelDescription.xml: {name}: valueReference must be {index}, its place in the list")
+        refuse(f"{name}: valueReference must be {index}, its place in the list")
     items = enums.get(value.get("declaredType"), [])
     low, high = value.get("min"), value.get("max")
     if items:
@@ -48,43 +61,110 @@ def row(index, variable, enums):
     if start is not None:
         for bound, outside in ((low, float.__lt__), (high, float.__gt__)):
             if bound is not None and outside(float(start), float(bound)):
-                sys.exit(f"modelDescription.xml: {name}: start = {start} is outside its bound {bound}")
-    causality = variable.get("causality")
+                refuse(f"{name}: start = {start} is outside its bound {bound}")
     return (
-        f'  X({identifier}, {element}, "{name}", {value.tag}, {causality[0].upper()}{causality[1:]}, '
+        f'{identifier}, {element}, "{name}", {value.tag}, {causality(variable)}, '
         f'{str(variable.get("variability") == "tunable").lower()}, "{value.get("unit", "")}", {start or 0}, '
-        f'{low or "-" + UNBOUNDED}, {high or UNBOUNDED}, "{", ".join(items)}")'
+        f'{low or "-" + UNBOUNDED}, {high or UNBOUNDED}, "{", ".join(items)}"'
     )
+
+
+def macro(name, columns, rows):
+    """Text that defines a macro which applies its argument to each row."""
+    return f"// {columns}\n#define ZSPRING_{name}(X) \\\n" + " \\\n".join(f"  X({r})" for r in rows) + "\n"
+
+
+def table(root, guid):
+    """Text of variables.inc."""
+    variables, enums, identifiers, outputs = list(root.find("ModelVariables")), enumerations(root), {}, []
+    for v in variables:
+        identifier, element = identifier_and_index(v.get("name"))
+        continuous = v[0].tag == "Real" and v.get("variability", "continuous") == "continuous"
+        identifiers[identifier] = f"{identifier}, {causality(v)}, {str(continuous).lower()}"
+        if v.get("causality") == "output":
+            outputs.append(f"{identifier}, {element}")
+    place = iter(range(len(outputs)))
+    rows = [
+        f"{row(i, v, enums)}, {next(place) if v.get('causality') == 'output' else -1}" for i, v in enumerate(variables)
+    ]
+    return (
+        "// Generated from the model description.\n"
+        f'#define ZSPRING_GUID "{guid}"\n'
+        f'#define ZSPRING_MODEL_IDENTIFIER "{root.find("CoSimulation").get("modelIdentifier")}"\n'
+        + macro("IDENTIFIERS", "identifier, causality, continuous", identifiers.values())
+        + macro(
+            "VARIABLES",
+            "identifier, index, name, type, causality, tunable, unit, start, min, max, "
+            "items of an enumeration, place among the outputs",
+            rows,
+        )
+        + macro("OUTPUTS", "identifier, index", outputs)
+        + macro("LOG_CATEGORIES", "name", [c.get("name") for c in root.iter("Category")])
+    )
+
+
+def dependencies(root):
+    """Of each output and calculated parameter, the indices from 1 that it declares; {its index: [index, ...]}."""
+    groups = {g.get("name"): g.get("variables") for g in root.iter("Group")}
+    variables = list(enumerate(root.find("ModelVariables"), 1))
+    known = {v.get("name"): i for i, v in variables if v.get("causality") in ("parameter", "input")}
+
+    def indices(names, where):
+        if names is None:
+            refuse(f"{where}: {DECLARED} is missing or names no group; it is empty where there are none")
+        found = set()
+        for name in names.split():
+            pattern = re.escape(name).replace(r"\*", ".*")
+            matches = {i for n, i in known.items() if re.fullmatch(pattern, n)}
+            if name.startswith("@"):
+                matches = indices(groups.get(name[1:]), where)
+            if not matches:
+                refuse(f"{where}: {DECLARED}: {name} is no parameter or input")
+            found |= matches
+        return found
+
+    return {
+        i: sorted(indices(v.get(DECLARED), v.get("name")))
+        for i, v in variables
+        if v.get("causality") in ("output", "calculatedParameter")
+    }
+
+
+def final_description(text, root, guid):
+    """The model description as FMI has it: with GUID and ModelStructure, without what only the build reads."""
+    variables, declared = list(root.find("ModelVariables")), dependencies(root)
+
+    def unknowns(tag, listed):
+        lines = [
+            f'      <Unknown index="{i}" dependencies="{" ".join(map(str, known))}"/>'
+            f" <!-- {variables[i - 1].get('name')} -->\n"
+            for i, known in listed.items()
+        ]
+        return f"<{tag}>\n{''.join(lines)}    </{tag}>"
+
+    # An input set between two steps acts in the next one only: no output has direct feedthrough.
+    outputs = {i: [] for i in declared if variables[i - 1].get("causality") == "output"}
+    for pattern, replacement, count in (
+        ('guid=""', f'guid="{guid}"', 1),
+        (r"  <DependencyGroups>.*?</DependencyGroups>\n\n", "", 1),
+        (rf'\s+{DECLARED}="[^"]*"', "", len(declared)),
+        ("<Outputs/>", unknowns("Outputs", outputs), 1),
+        ("<InitialUnknowns/>", unknowns("InitialUnknowns", declared), 1),
+    ):
+        text, found = re.subn(pattern, replacement, text, flags=re.DOTALL)
+        if found != count:
+            refuse(f"{pattern} is expected {count} times, not {found}")
+    return text
 
 
 def main(source, out_dir):
     text = Path(source).read_text(encoding="utf-8")
-    guid = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, text)) + "}"
-    final, placeholders = re.subn(r'guid=""', f'guid="{guid}"', text)
-    if placeholders != 1:
-        sys.exit('modelDescription.xml: exactly one guid="" is expected')
     root = ET.fromstring(text)
-    enums = enumerations(root)
-    rows = [row(i, v, enums) for i, v in enumerate(root.find("ModelVariables"))]
-    identifiers = dict.fromkeys(identifier_and_index(v.get("name"))[0] for v in root.find("ModelVariables"))
-    categories = [f"  X({c.get('name')})" for c in root.iter("Category")]
-    table = [
-        "// Generated from modelDescription.xml.",
-        f'#define ZSPRING_GUID "{guid}"',
-        f'#define ZSPRING_MODEL_IDENTIFIER "{root.find("CoSimulation").get("modelIdentifier")}"',
-        "#define ZSPRING_IDENTIFIERS(X) \\",
-        " \\\n".join(f"  X({identifier})" for identifier in identifiers),
-        "// identifier, index, name, type, causality, tunable, unit, start, min, max, items of an enumeration",
-        "#define ZSPRING_VARIABLES(X) \\",
-        " \\\n".join(rows),
-        "#define ZSPRING_LOG_CATEGORIES(X) \\",
-        " \\\n".join(categories),
-        "",
-    ]
+    guid = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, text)) + "}"
     out = Path(out_dir)
     out.mkdir(parents=True, exist_ok=True)
-    (out / "variables.inc").write_text("\n".join(table), encoding="utf-8")
-    (out / "modelDescription.xml").write_bytes(final.encode("utf-8"))
+    (out / "variables.inc").write_text(table(root, guid), encoding="utf-8")
+    (out / "modelDescription.xml").write_bytes(final_description(text, root, guid).encode("utf-8"))
 
 
 if __name__ == "__main__":

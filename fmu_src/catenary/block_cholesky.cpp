@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "common/signal.hpp"
+#include "common/failure.hpp"
 
 namespace zspring::catenary {
 namespace {
@@ -27,7 +27,7 @@ BlockCholesky::BlockCholesky(const SparseMatrix& matrix) : blocks_(static_cast<s
     }
     const Eigen::LLT<Eigen::Matrix4d> factor(diagonal);
     if (factor.info() != Eigen::Success || !diagonal.allFinite())
-      throw ParameterError(
+      refuse(
           "the line's matrices are not positive definite to rounding: its masses, tensions, stiffnesses "
           "and lengths must be of less different orders of magnitude");
     blocks_[i].inverse = factor.matrixL().solve(Eigen::Matrix4d::Identity());

@@ -13,7 +13,7 @@ namespace zspring::catenary {
 
 class BlockCholesky {
  public:
-  // Throws ParameterError where the matrix is not positive definite.
+  // Throws Refusal where the matrix is not positive definite.
   explicit BlockCholesky(const SparseMatrix& matrix);
 
   void solve(VectorXd& x) const;  // in place, without allocation

@@ -1,15 +1,10 @@
 // What the inputs do over one communication step: where the pantographs are, and how hard they press.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
+#include "common/time.hpp"
 #include "line.hpp"
-#include "path.hpp"
 
 namespace zspring::catenary {
-
-inline constexpr double rounding_of_time = 1e-6;  // of an internal step: hosts add up their communication points
 
 inline Loads loads_at(const Mesh& mesh, const Passage passage[pantographs]) {
   Loads l;
@@ -34,12 +29,12 @@ class CommunicationStep {
   Passage at(int i, double tau) const {
     const PantographInputs& u = inputs_.pantograph[i];
     const Passage& from = begin_[i];
-    const double force = Path(from.force, u.force, length_).at(tau);
+    const double force = u.force.from(from.force, length_).at(tau);
     if (line_.p.travel == Travel::Position) {
-      const Path x(from.position, u.position, length_);
-      return {x.at(tau), x.rate(tau), force};
+      const Signal x = u.position.from(from.position, length_);
+      return {x.at(tau), x.rate_at(tau), force};
     }
-    const Path speed(from.speed, u.speed, length_);
+    const Signal speed = u.speed.from(from.speed, length_);
     return {from.position + speed.integral(tau), speed.at(tau), force};
   }
 
@@ -61,10 +56,10 @@ class CommunicationStep {
   // m/s2, at the end.
   double speed_rate(int i) const {
     if (line_.p.travel == Travel::Position) return 0;
-    return Path(begin_[i].speed, inputs_.pantograph[i].speed, length_).rate(length_);
+    return inputs_.pantograph[i].speed.from(begin_[i].speed, length_).rate_at(length_);
   }
 
-  double internal_steps() const { return std::max(1.0, std::ceil(length_ / line_.p.step - rounding_of_time)); }
+  Count internal_steps() const { return zspring::internal_steps(length_, line_.p.step); }
   double length() const { return length_; }
 
  private:

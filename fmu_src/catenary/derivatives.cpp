@@ -1,49 +1,12 @@
 // Derivatives of the outputs, with respect to time and to the inputs.
+#include <algorithm>
 #include <utility>
 
 #include "simulation.hpp"
 
 namespace zspring::catenary {
 
-// With the variation `d` of the state and of where the pantographs are; counters do not vary.
-Outputs Simulation::change(const LineState& d) const {
-  Outputs y{};
-  const LineState& s = state_;
-  const auto at = [&](const Passage& now, const Passage& change) {
-    const Place place = line_.mesh.at(now.position);
-    const Eigen::Vector4d u = place.of(s.u), height = u + place.of(line_.shape.height), v = place.of(s.v);
-    const Eigen::Vector4d du = place.of(d.u), dv = place.of(d.v);
-    WireOutputs w;
-    w.uplift = place.value.dot(du) + change.position * place.slope.dot(u);
-    w.height = place.value.dot(du) + change.position * place.slope.dot(height);
-    w.velocity = place.value.dot(dv) + change.position * place.slope.dot(v) + now.speed * place.slope.dot(du) +
-                 change.speed * place.slope.dot(height) +
-                 now.speed * change.position * place.curvature.dot(height);
-    return w;
-  };
-  for (int i = 0; i < pantographs; ++i) {
-    y.position[i] = d.passage[i].position;
-    y.contact[i] = at(s.passage[i], d.passage[i]);
-  }
-  for (size_t i = 0; i < line_.mesh.supports.size(); ++i)
-    y.support_uplift[i] = d.u[deflection(line_.mesh.supports[i], Contact)];
-  for (int i = 0; i < most_points; ++i) y.point[i] = at({line_.p.point_position[i], 0, 0}, {});
-  int weakest = 0, strongest = 0;
-  const int n = static_cast<int>(line_.mesh.droppers.size());
-  for (int j = 1; j < n; ++j) {
-    if (dropper_force(j) < dropper_force(weakest)) weakest = j;
-    if (dropper_force(j) > dropper_force(strongest)) strongest = j;
-  }
-  const auto force_change = [&](int j) {
-    return j < n && !(s.slack[j] > 0) ? line_.shape.stiffness[j] * stretch(line_.mesh, d.u, j) : 0;
-  };
-  y.dropper_force_min = force_change(weakest);
-  y.dropper_force_max = force_change(strongest);
-  y.kinetic = d.kinetic, y.elastic = d.elastic, y.dissipated = d.dissipated, y.work = d.work;
-  return y;
-}
-
-Outputs Simulation::output_rates() const {
+Outputs Simulation::output_rates() {
   const LineState& s = state_;
   LineState d;
   d.u = s.v;
@@ -89,7 +52,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
   const Passage nothing[pantographs] = {};
   const CommunicationStep step(line_, before_.passage, held_, length_),
       change_of(line_, nothing, changed, length_);
-  const double n = step.internal_steps();
+  const double n = static_cast<double>(step.internal_steps());
   const StepFactors& factors = hht_.factors(length_ / n);
 
   LineState d;
@@ -105,11 +68,11 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     hht_.jump(loads_at(line_.mesh, before_.passage), l0, now);
   }
   const LineState& from = n > 1 ? now : before_;
-  for (double k = 1; k <= n; ++k) {
+  for (Count k = 1; k <= step.internal_steps(); ++k) {
     const Loads l1 = step.loads(k / n * length_), dl1 = step.loads_change(change_of, k / n * length_);
     if (k < n) {
       next = now;
-      hht_.step(factors, l0, l1, next);
+      if (!hht_.step(factors, l0, l1, next)) break;  // not reached: it was solved before
     }
     const LineState& to = k < n ? next : state_;
     const VectorXd old_dv = d.v;

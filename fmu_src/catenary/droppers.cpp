@@ -1,5 +1,6 @@
 #include "droppers.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace zspring::catenary {
@@ -52,7 +53,7 @@ void Slackening::solve_active(const VectorXd& trial, const MatrixXd& compliance,
   for (Eigen::Index a = 0; a < count_; ++a) s[active_[a]] = solution[a];
 }
 
-int Slackening::solve(const VectorXd& trial, const MatrixXd& compliance, VectorXd& s) {
+std::optional<int> Slackening::solve(const VectorXd& trial, const MatrixXd& compliance, VectorXd& s) {
   const Eigen::Index n = trial.size();
   const double tolerance = 1e-9 * std::max(1.0, n > 0 ? trial.cwiseAbs().maxCoeff() : 0);  // N
   for (Eigen::Index i = 0; i < n; ++i) is_active_[i] = s[i] > 0;
@@ -96,7 +97,7 @@ int Slackening::solve(const VectorXd& trial, const MatrixXd& compliance, VectorX
     for (Eigen::Index i = 0; i < n; ++i)
       if (force_[i] > 0) is_active_[i] ^= 1;
   }
-  return -1;
+  return std::nullopt;
 }
 
 void Slackening::solve_variation(const VectorXd& trial, const MatrixXd& compliance, const VectorXd& s,

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <optional>
 
 #include "block_cholesky.hpp"
 #include "mesh.hpp"
@@ -48,8 +49,8 @@ class Slackening {
   explicit Slackening(const VectorXd& stiffness);
 
   // From `trial` N, the forces with s = 0, to the slack s, m; begins with what is slack in s. Returns the number
-  // of linear systems solved; -1 when it found no solution, which rounding alone could cause.
-  int solve(const VectorXd& trial, const MatrixXd& compliance, VectorXd& s);
+  // of linear systems solved; none when it found no solution, which rounding alone could cause.
+  std::optional<int> solve(const VectorXd& trial, const MatrixXd& compliance, VectorXd& s);
   // Its derivative: the same droppers stay slack, with variations in place of values.
   void solve_variation(const VectorXd& trial, const MatrixXd& compliance, const VectorXd& s, VectorXd& ds);
 

@@ -12,26 +12,20 @@ double rounded(double h) {
   return std::ldexp(std::round(std::ldexp(mantissa, 36)), exponent - 36);
 }
 
-double weight(const Line& line) { return 1 + line.p.hht_alpha; }
-
 // M + (1 + hht_alpha) (gamma h C + beta h^2 K)
-SparseMatrix iteration_matrix(const Line& line, double gamma_h, double beta_h2) {
+SparseMatrix iteration_matrix(const Line& line, const HhtCoefficients& c) {
   const Parameters& p = line.p;
-  const double w = weight(line);
-  return (1 + w * gamma_h * p.damping_mass) * line.matrices.mass +
-         w * gamma_h * p.damping_stiffness * line.matrices.wires + w * beta_h2 * line.stiffness();
+  return (1 + c.weight * c.gamma_h * p.damping_mass) * line.matrices.mass +
+         c.weight * c.gamma_h * p.damping_stiffness * line.matrices.wires +
+         c.weight * c.beta_h2 * line.stiffness();
 }
 
 }  // namespace
 
 StepFactors::StepFactors(const Line& line, double step)
-    : h(step),
-      beta_h2(0.25 * (1 - line.p.hht_alpha) * (1 - line.p.hht_alpha) * h * h),
-      gamma_h((0.5 - line.p.hht_alpha) * h),
-      old_position(0.5 * h * h - beta_h2),
-      old_velocity(h - gamma_h),
-      factor(iteration_matrix(line, gamma_h, beta_h2)),
-      droppers(line.mesh, factor, weight(line) * beta_h2) {}
+    : HhtCoefficients(line.p.hht_alpha, step),
+      factor(iteration_matrix(line, *this)),
+      droppers(line.mesh, factor, weight * beta_h2) {}
 
 Hht::Hht(const Line& line)
     : line_(line),
@@ -94,7 +88,7 @@ std::optional<LineState> Hht::at_rest(const Loads& loads) {
   trial_ += line_.shape.tension;
   if (trial_.size() > 0 && trial_.minCoeff() < 0) {
     const DropperResponse response(line_.mesh, factor, 1);
-    if (slackening_.solve(trial_, response.compliance(), s.slack) < 0) return std::nullopt;
+    if (!slackening_.solve(trial_, response.compliance(), s.slack)) return std::nullopt;
     add_slack(response, 1, s.slack, s.u);
   }
   wires_.multiply(s.u, x_);
@@ -136,35 +130,33 @@ void Hht::predict(const StepFactors& f, const Loads& l1, LineState& s) {
   line_.add_springs(s.u, x_);
   mass_.multiply(s.v, mv_);
   x_ += p.damping_mass * mv_;
-  s.a = p.hht_alpha * s.internal - weight(line_) * x_;
-  l1.add_to(s.a, weight(line_));
+  s.a = f.hht_alpha * s.internal - f.weight * x_;
+  l1.add_to(s.a, f.weight);
   f.factor.solve(s.a);
 }
 
 // With what the slack droppers do: the state at the end of the step.
 void Hht::correct(const StepFactors& f, LineState& s) {
-  const double w = weight(line_);
+  const double w = f.weight;
   add_slack(f.droppers, w, s.slack, s.a);
   s.u += f.beta_h2 * s.a;
   s.v += f.gamma_h * s.a;
   mass_.multiply(s.a, ma_);
-  s.internal = (line_.p.hht_alpha / w) * s.internal - (1 / w) * ma_;
+  s.internal = (f.hht_alpha / w) * s.internal - (1 / w) * ma_;
 }
 
 bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s) {
   const Parameters& p = line_.p;
   const double work_before = l0.dot(s.u) + l1.dot(s.u);
-  // To where a step of another length expects it, else steps of changing lengths are of first order.
-  if (s.h > 0 && s.h != f.h) s.a += p.hht_alpha * (f.h - s.h) * s.a_slope;
-  // A sliver of a step says little of the slope and would have it magnified by the next.
-  const bool slope_known = f.h >= 0.25 * s.h;
+  move_memory(f.hht_alpha, s.h, f.h, s.a_slope, s.a);
+  const bool slope_known = tells_slope(f.h, s.h);
   if (slope_known) s.a_slope = s.a;
   old_v_ = s.v;
   predict(f, l1, s);
   trial_forces(s.u, s.a, f.beta_h2);
   trial_ += line_.shape.tension;
-  const int solved = slackening_.solve(trial_, f.droppers.compliance(), s.slack);
-  if (solved < 0 || !s.a.allFinite()) return false;
+  const std::optional<int> solved = slackening_.solve(trial_, f.droppers.compliance(), s.slack);
+  if (!solved || !s.a.allFinite()) return false;
   correct(f, s);
   if (slope_known) s.a_slope = (s.a - s.a_slope) / f.h;
   s.h = f.h;
@@ -186,8 +178,7 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
   s.elastic = 0.5 * strain;
 
   s.statistics.steps += 1;
-  s.statistics.iterations += solved;
-  s.statistics.iterations_max = std::max<double>(s.statistics.iterations_max, solved);
+  s.statistics.add_attempt(*solved);
   return true;
 }
 
@@ -195,7 +186,7 @@ void Hht::step_variation(const StepFactors& f, const Loads& dl1, const LineState
   if (d.u.isZero(0) && d.v.isZero(0) && d.a.isZero(0) && d.internal.isZero(0)) {
     // The usual case, a single step: nothing has varied before it.
     mv_.setZero();
-    dl1.add_to(d.a, weight(line_));
+    dl1.add_to(d.a, f.weight);
     f.factor.solve(d.a);
   } else {
     predict(f, dl1, d);

@@ -1,27 +1,23 @@
-// One step of HHT-alpha (Hilber, Hughes, Taylor 1977) for the line, which is linear but for its slack droppers.
+// One step of HHT-alpha (common/hht.hpp) for the line, which is linear but for its slack droppers.
 //
 //   M a[n+1] + (1 + hht_alpha) R[n+1] - hht_alpha R[n] = 0,   R = C v + K u + slack droppers - contact forces
-//   u[n+1] = u + h v + h^2 ((1/2 - beta) a + beta a[n+1]),    v[n+1] = v + h ((1 - gamma) a + gamma a[n+1])
-//   beta = (1 - hht_alpha)^2 / 4,   gamma = 1/2 - hht_alpha
 #pragma once
 
 #include <memory>
 #include <optional>
 
+#include "common/hht.hpp"
 #include "droppers.hpp"
 #include "line.hpp"
 #include "wire_operator.hpp"
 
 namespace zspring::catenary {
 
-// What depends on the length of the step: factorised once for each length.
-struct StepFactors {
+// Of one length of step: factorised once for each.
+struct StepFactors : HhtCoefficients {
   StepFactors(const Line& line, double h);
 
-  double h;                           // s
-  double beta_h2, gamma_h;            // s2, s
-  double old_position, old_velocity;  // (1/2 - beta) h^2, (1 - gamma) h
-  BlockCholesky factor;               // of M + (1 + hht_alpha) (gamma h C + beta h^2 K)
+  BlockCholesky factor;      // of M + (1 + hht_alpha) (gamma h C + beta h^2 K)
   DropperResponse droppers;  // its compliance is that of u at the end of a step to a dropper's force there
 };
 
@@ -38,7 +34,7 @@ class Hht {
   LineState at_rest_variation(const Loads& dloads, const VectorXd& slack);  // slack: of the state at rest
   // From the loads `l0`, at its begin, to `l1`. False, with `s` without meaning, when no set of slack droppers
   // fits.
-  bool step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s);
+  [[nodiscard]] bool step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s);
   // The same for a variation `d` of the state that the step led to `to` from; what is slack stays slack. Of
   // the energies it knows the kinetic one.
   void step_variation(const StepFactors& f, const Loads& dl1, const LineState& to, LineState& d);

@@ -1,6 +1,7 @@
 // The overhead line, linearised about its unloaded static shape, and all that changes in a simulation step.
 #pragma once
 
+#include "common/statistics.hpp"
 #include "static_shape.hpp"
 
 namespace zspring::catenary {
@@ -9,12 +10,12 @@ namespace zspring::catenary {
 //
 //   M u'' + C u' + K u = forces,   C = damping_mass M + damping_stiffness K_wires
 struct Line {
-  explicit Line(const Parameters& parameters);
+  explicit Line(const Parameters& parameters);  // refers to them
 
   void add_springs(const VectorXd& u, VectorXd& internal) const;  // supports, steady arms, pulling droppers
   SparseMatrix stiffness() const;                                 // K
 
-  Parameters p;
+  const Parameters& p;
   Mesh mesh;
   Matrices matrices;
   StaticShape shape;
@@ -44,12 +45,6 @@ struct Loads {
   }
 };
 
-struct Statistics {
-  double steps = 0;           // internal steps
-  double iterations = 0;      // linear systems solved for the slack droppers
-  double iterations_max = 0;  // of the worst step
-};
-
 // Position, speed and force of a pantograph at a communication point.
 struct Passage {
   double position = 0;  // m
@@ -59,7 +54,7 @@ struct Passage {
 
 struct LineState {
   VectorXd u, v;      // m and 1, m/s and 1/s
-  VectorXd a;         // HHT's acceleration, which belongs to t + hht_alpha h
+  VectorXd a;         // HHT's memory, common/hht.hpp
   VectorXd a_slope;   // its rate
   VectorXd internal;  // N and N m: C v + K u + slack droppers - contact forces
   VectorXd damping;   // N and N m: C v
@@ -75,7 +70,7 @@ void visit(LineState& s, Visitor&& f) {
   f(s.u), f(s.v), f(s.a), f(s.a_slope), f(s.internal), f(s.damping), f(s.slack), f(s.h);
   f(s.kinetic), f(s.elastic), f(s.dissipated), f(s.work);
   for (Passage& p : s.passage) f(p.position), f(p.speed), f(p.force);
-  f(s.statistics.steps), f(s.statistics.iterations), f(s.statistics.iterations_max);
+  visit(s.statistics, f);
 }
 
 }  // namespace zspring::catenary

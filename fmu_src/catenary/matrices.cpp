@@ -1,6 +1,6 @@
 #include "matrices.hpp"
 
-#include <algorithm>
+#include <utility>
 
 namespace zspring::catenary {
 namespace {

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "common/failure.hpp"
 
 namespace zspring::catenary {
 namespace {
@@ -14,14 +15,12 @@ void check_droppers(const Parameters& p) {
   for (int i = 0; i < p.dropper.count; ++i) {
     const double x = p.dropper.position[i];
     const double low = last + least_distance, high = p.span - least_distance;
-    if (x < low || x > high) {
-      char text[240];
-      std::snprintf(text, sizeof text,
-                    "dropper.position[%d] = %.10g m: must be at least %.10g m and at most %.10g m, after the dropper "
-                    "before it and within line.span = %.10g m",
-                    i + 1, x, low, high, p.span);
-      throw ParameterError(text);
-    }
+    if (x < low || x > high)
+      refuse(
+          "dropper.position[%d] = %.10g m: must be at least %.10g m and at most %.10g m, after the dropper before "
+          "it "
+          "and within line.span = %.10g m",
+          i + 1, x, low, high, p.span);
     last = x;
   }
 }

@@ -39,7 +39,7 @@ struct Place {
 
 class Mesh {
  public:
-  // Throws ParameterError where droppers are not in order within the span.
+  // Throws Refusal where droppers are not in order within the span.
   explicit Mesh(const Parameters& p);
 
   int stations() const { return static_cast<int>(x.size()); }

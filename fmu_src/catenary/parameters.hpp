@@ -1,4 +1,4 @@
-// What a user can set and read: parameters, inputs and outputs of the overhead line.
+// What a user can set: parameters and inputs of the overhead line; its outputs are in outputs.cpp.
 //
 // SI units throughout, upward positive. Height 0 is the contact wire's at a dropper without pre-sag; uplifts are
 // measured from the unloaded static shape. There are no default values here: the model description holds them.
@@ -70,20 +70,7 @@ void visit(Inputs& u, Visitor&& f) {
     zspring::visit(p.force, f), zspring::visit(p.speed, f), zspring::visit(p.position, f);
 }
 
-struct WireOutputs {
-  double height, uplift, velocity;
-};
-
-struct Outputs {
-  double position[pantographs];
-  WireOutputs contact[pantographs];  // velocity: of the height at the moving point
-  double support_uplift[most_supports];
-  WireOutputs point[most_points];
-  double slack, dropper_force_min, dropper_force_max;
-  double kinetic, elastic, dissipated, work;
-  double steps, iterations, iterations_max;
-};
-
+// The calculated parameters.
 struct LineFacts {
   double length = 0;             // m
   double dropper_force_min = 0;  // N, in the static state

@@ -1,51 +1,45 @@
 // A simulation: the line from its equilibrium under the first contact forces, communication step by step.
 #pragma once
 
+#include "common/model.hpp"
 #include "communication_step.hpp"
 #include "hht.hpp"
+#include "outputs.hpp"
 
 namespace zspring::catenary {
 
-class Simulation {
+class Simulation final : public Model<Parameters, Inputs> {
  public:
-  // Throws ParameterError.
   Simulation(const Parameters& parameters, const Inputs& inputs);
-  Simulation(const Simulation&) = delete;
-  Simulation& operator=(const Simulation&) = delete;
 
-  // Over `length` > 0 s. False, with the state as before, where a pantograph that presses leaves the line, or
-  // where the slack droppers could not be found.
-  bool advance(const Parameters&, const Inputs& inputs, double length, AdvanceFailure& failure);
+  // Discarded where a pantograph that presses leaves the line, or the slack droppers could not be found.
+  std::optional<Discard> advance(const Inputs& inputs, double length) override;
 
-  Outputs outputs() const;
-  // d outputs / d time at the end of the last communication step; of velocities that of HHT, of first order.
-  Outputs output_rates() const;
-  // Variation of the outputs with that of the inputs' values held in the last communication step; before the
-  // first one, with that of the initial inputs.
-  Outputs outputs_change(const Inputs& direction);
+  // derivatives.cpp. Of velocities that of HHT, of first order.
+  Outputs output_rates() override;
+  Outputs outputs_change(const Inputs& direction) override;
 
-  const char* describe_imbalance(char*, int) const { return nullptr; }  // it starts in equilibrium
-  void describe_run(char* text, int size) const;
-  const char* describe_step(char*, int) const { return nullptr; }
+  std::optional<Text> describe_imbalance() const override { return std::nullopt; }  // it starts in equilibrium
+  Text describe_run() const override;
+  std::optional<Text> describe_step() const override { return std::nullopt; }
+
+  void write(Writer& writer) override { visit_state(writer); }
 
   const LineFacts& calculated() const { return facts_; }
 
-  // Numbers in fixed order, each given to f as a double or a vector of them.
+ private:
+  Outputs present_outputs() const override { return catenary::outputs({line_, state_}); }
+  Outputs change(const LineState& d) const { return catenary::outputs_change({line_, state_}, d); }
+  std::optional<Discard> leaves_line(const CommunicationStep& step) const;
+  void read(Reader& reader) override { visit_state(reader); }
+  bool is_possible() const override;
   template <class Visitor>
-  void visit_state(Visitor&& f) {
+  void visit_state(Visitor& f) {
     visit(state_, f);
     visit(before_, f);
     visit(held_, f);
     f(length_);
   }
-  // Whether these could be a simulation's: some of them are counts.
-  bool is_possible() const;
-
- private:
-  bool stays_on_line(const CommunicationStep& step, AdvanceFailure& failure) const;
-  double dropper_force(int dropper) const;
-  // derivatives.cpp
-  Outputs change(const LineState& d) const;
 
   Line line_;
   Hht hht_;

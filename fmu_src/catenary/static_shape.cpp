@@ -1,8 +1,7 @@
 #include "static_shape.hpp"
 
-#include <cstdio>
-
 #include "block_cholesky.hpp"
+#include "common/failure.hpp"
 
 namespace zspring::catenary {
 namespace {
@@ -18,13 +17,10 @@ VectorXd hang(const SparseMatrix& wires, const VectorXd& load, const std::vector
   return x;
 }
 
-[[noreturn]] void refuse(const Parameters& p, int dropper, const char* format, double value) {
-  char reason[120], text[240];
+[[noreturn]] void refuse_dropper(const Parameters& p, int dropper, const Text& reason) {
   const int i = dropper % p.dropper.count;
-  std::snprintf(reason, sizeof reason, format, value);
-  std::snprintf(text, sizeof text, "dropper.position[%d] = %.10g m, dropper.sag[%d] = %.10g m: %s", i + 1,
-                p.dropper.position[i], i + 1, p.dropper.sag[i], reason);
-  throw ParameterError(text);
+  refuse("dropper.position[%d] = %.10g m, dropper.sag[%d] = %.10g m: %s", i + 1, p.dropper.position[i], i + 1,
+         p.dropper.sag[i], reason.chars);
 }
 
 }  // namespace
@@ -71,9 +67,11 @@ StaticShape static_shape(const Parameters& p, const Mesh& mesh, const Matrices& 
   }
   for (int j = 0; j < n; ++j) {
     if (!(shape.length[j] > 0))
-      refuse(p, j, "the dropper would be %.6g m long; line.encumbrance must be larger", shape.length[j]);
+      refuse_dropper(p, j,
+                     text("the dropper would be %.6g m long; line.encumbrance must be larger", shape.length[j]));
     if (!(shape.tension[j] >= 0))
-      refuse(p, j, "in the static state the dropper would have to push, with %.6g N", -shape.tension[j]);
+      refuse_dropper(p, j,
+                     text("in the static state the dropper would have to push, with %.6g N", -shape.tension[j]));
     shape.stiffness[j] = p.dropper.EA > 0 ? p.dropper.EA / shape.length[j] : p.dropper.stiffness;
   }
   return shape;

@@ -15,7 +15,7 @@ struct StaticShape {
 // The contact wire hangs at its prescribed height at every dropper and under its own weight between them; what it
 // takes to hold it there is what the droppers carry. The messenger hangs under its own weight and theirs, at the
 // encumbrance over its supports and anchors: whatever a support gives way is built in. The steady arms carry
-// nothing. Throws ParameterError where a dropper would have to push, or has no length.
+// nothing. Throws Refusal where a dropper would have to push, or has no length.
 StaticShape static_shape(const Parameters& p, const Mesh& mesh, const Matrices& matrices);
 
 }  // namespace zspring::catenary

@@ -2,63 +2,35 @@
 // maps what was thrown to a status. No exception crosses this boundary and there is no global state.
 #include <cstring>
 #include <memory>
-#include <new>
+#include <type_traits>
 
 #include "fmi2Functions.h"
 #include "instance.hpp"
 #include "serialization.hpp"
 
+using namespace zspring;
 using namespace zspring::fmi;
 
 namespace {
 
-// Where calls are allowed: the table of section 4.2.4.
-constexpr unsigned any_phase = Instantiated | Initialization | StepComplete | StepFailed | Terminated | Error;
-constexpr unsigned readable = any_phase & ~Instantiated;
-constexpr unsigned settable = Instantiated | Initialization | StepComplete | StepFailed;
-constexpr unsigned stepping = StepComplete | StepFailed;
-constexpr unsigned after_step = StepComplete | StepFailed | Terminated | Error;
+using State = zspring::Numbers;
 
-using State = std::vector<double>;
-
-const char* phase_name(Phase phase) {
-  switch (phase) {
-    case Instantiated:
-      return "before fmi2EnterInitializationMode";
-    case Initialization:
-      return "in Initialization Mode";
-    case StepComplete:
-      return "between steps";
-    case StepFailed:
-      return "after a discarded step";
-    case Terminated:
-      return "after fmi2Terminate";
-    case Error:
-      break;
-  }
-  return "after an internal error";
-}
-
+// `action` does what the call is for; where it returns no status, it is fmi2OK.
 template <class Action>
 fmi2Status guarded(fmi2Component component, unsigned allowed, const char* function, Action&& action) {
   auto* instance = static_cast<Instance*>(component);
   if (!instance) return fmi2Error;
   const auto fail = [&](const char* reason) {
-    char text[640];
-    std::snprintf(text, sizeof text, "%s: %s", function, reason);
-    instance->log.write(fmi2Error, Category::logStatusError, text);
+    instance->log.write(fmi2Error, Category::logStatusError, text("%s: %s", function, reason));
     return fmi2Error;
   };
-  if (!(instance->phase & allowed)) {
-    char reason[120];
-    std::snprintf(reason, sizeof reason, "not allowed %s", phase_name(instance->phase));
-    return fail(reason);
-  }
+  if (!(instance->phase & allowed)) return fail(text("not allowed %s", phase_name(instance->phase)).chars);
   try {
-    return action(*instance);
+    if constexpr (std::is_void_v<decltype(action(*instance))>)
+      return action(*instance), fmi2OK;
+    else
+      return action(*instance);
   } catch (const Refusal& e) {
-    return fail(e.what());
-  } catch (const zspring::ParameterError& e) {
     return fail(e.what());
   } catch (const std::exception& e) {
     instance->phase = Error;
@@ -70,7 +42,7 @@ fmi2Status guarded(fmi2Component component, unsigned allowed, const char* functi
 }
 
 void need(const void* pointer, size_t n, const char* name) {
-  if (n > 0 && !pointer) throw Refusal(std::string(name) + ": must not be NULL");
+  if (n > 0 && !pointer) refuse("%s: must not be NULL", name);
 }
 
 template <class Value>
@@ -79,7 +51,6 @@ fmi2Status get_values(fmi2Component c, const char* function, Type type, const fm
   return guarded(c, readable, function, [&](Instance& i) {
     need(vr, n, "vr"), need(values, n, "value");
     for (size_t k = 0; k < n; ++k) values[k] = static_cast<Value>(i.get(vr[k], type));
-    return fmi2OK;
   });
 }
 
@@ -94,14 +65,12 @@ fmi2Status set_values(fmi2Component c, const char* function, Type type, const fm
     double* numbers = n > 32 ? many.data() : few;
     for (size_t k = 0; k < n; ++k) numbers[k] = static_cast<double>(values[k]);
     i.set(vr, n, type, numbers);
-    return fmi2OK;
   });
 }
 
 fmi2Status no_strings(fmi2Component c, unsigned allowed, const char* function, size_t n) {
   return guarded(c, allowed, function, [&](Instance&) {
-    if (n > 0) throw Refusal("this FMU has no variables of type String");
-    return fmi2OK;
+    if (n > 0) refuse("this FMU has no variables of type String");
   });
 }
 
@@ -109,7 +78,7 @@ fmi2Status no_strings(fmi2Component c, unsigned allowed, const char* function, s
 fmi2Status no_status(fmi2Component c, const char* function) {
   return guarded(c, after_step, function, [&](Instance& i) {
     i.log.write(fmi2Discard, Category::logStatusDiscard,
-                "this status is not available: steps are never asynchronous");
+                text("this status is not available: steps are never asynchronous"));
     return fmi2Discard;
   });
 }
@@ -124,8 +93,7 @@ const char* fmi2GetVersion(void) { return fmi2Version; }
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) {
   return guarded(c, any_phase, "fmi2SetDebugLogging", [&](Instance& i) {
     if (const char* unknown = i.log.enable(on != fmi2False, n, categories))
-      throw Refusal(std::string("category ") + unknown + ": is not a log category of this FMU");
-    return fmi2OK;
+      refuse("category %s: is not a log category of this FMU", unknown);
   });
 }
 
@@ -135,14 +103,17 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   try {
     const bool named = name && *name;
     auto instance = std::make_unique<Instance>(*functions, named ? name : "(unnamed)", debug != fmi2False);
-    std::string wrong;
-    if (!named) wrong = "instanceName: must not be empty";
-    if (type != fmi2CoSimulation) wrong = "fmuType: this FMU is for co-simulation only";
+    const auto fail = [&](const Text& reason) {
+      instance->log.write(fmi2Error, Category::logStatusError, reason);
+      return nullptr;
+    };
     if (!guid || std::strcmp(guid, ZSPRING_GUID) != 0)
-      wrong = std::string("fmuGUID = ") + (guid ? guid : "NULL") +
-              ": must be " ZSPRING_GUID "; modelDescription.xml and library are not from the same FMU";
-    if (wrong.empty()) return instance.release();
-    instance->log.write(fmi2Error, Category::logStatusError, wrong.c_str());
+      return fail(text("fmuGUID = %s: must be " ZSPRING_GUID
+                       "; modelDescription.xml and library are not from the same FMU",
+                       guid ? guid : "NULL"));
+    if (type != fmi2CoSimulation) return fail(text("fmuType: this FMU is for co-simulation only"));
+    if (!named) return fail(text("instanceName: must not be empty"));
+    return instance.release();
   } catch (...) {
   }
   return nullptr;
@@ -152,38 +123,24 @@ void fmi2FreeInstance(fmi2Component c) { delete static_cast<Instance*>(c); }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean /*tolerance_defined*/, fmi2Real /*tolerance*/,
                                fmi2Real start, fmi2Boolean has_stop, fmi2Real stop) {
-  return guarded(c, Instantiated, "fmi2SetupExperiment", [&](Instance& i) {
-    i.setup_experiment({start, has_stop ? stop : 0, has_stop != fmi2False});
-    return fmi2OK;
-  });
+  return guarded(c, Instantiated, "fmi2SetupExperiment",
+                 [&](Instance& i) { i.setup_experiment(start, has_stop != fmi2False, stop); });
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return guarded(c, Instantiated, "fmi2EnterInitializationMode", [](Instance& i) {
-    i.enter_initialization();
-    return fmi2OK;
-  });
+  return guarded(c, Instantiated, "fmi2EnterInitializationMode", [](Instance& i) { i.enter_initialization(); });
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  return guarded(c, Initialization, "fmi2ExitInitializationMode", [](Instance& i) {
-    i.exit_initialization();
-    return fmi2OK;
-  });
+  return guarded(c, Initialization, "fmi2ExitInitializationMode", [](Instance& i) { i.exit_initialization(); });
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-  return guarded(c, stepping, "fmi2Terminate", [](Instance& i) {
-    i.terminate();
-    return fmi2OK;
-  });
+  return guarded(c, stepping, "fmi2Terminate", [](Instance& i) { i.terminate(); });
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-  return guarded(c, any_phase, "fmi2Reset", [](Instance& i) {
-    i.reset();
-    return fmi2OK;
-  });
+  return guarded(c, any_phase, "fmi2Reset", [](Instance& i) { i.reset(); });
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
@@ -219,7 +176,6 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
       *static_cast<State*>(*state) = i.snapshot();
     else
       *state = new State(i.snapshot());
-    return fmi2OK;
   });
 }
 
@@ -227,16 +183,14 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
   return guarded(c, any_phase, "fmi2SetFMUstate", [&](Instance& i) {
     need(state, 1, "FMUstate");
     i.restore(*static_cast<State*>(state));
-    return fmi2OK;
   });
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, any_phase, "fmi2FreeFMUstate", [&](Instance&) {
-    if (!state) return fmi2OK;
+    if (!state) return;
     delete static_cast<State*>(*state);
     *state = nullptr;
-    return fmi2OK;
   });
 }
 
@@ -244,7 +198,6 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_
   return guarded(c, any_phase, "fmi2SerializedFMUstateSize", [&](Instance&) {
     need(state, 1, "FMUstate"), need(size, 1, "size");
     *size = serialized_size(*static_cast<State*>(state));
-    return fmi2OK;
   });
 }
 
@@ -252,9 +205,8 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
   return guarded(c, any_phase, "fmi2SerializeFMUstate", [&](Instance&) {
     need(state, 1, "FMUstate"), need(bytes, 1, "serializedState");
     const State& numbers = *static_cast<State*>(state);
-    if (size < serialized_size(numbers)) throw Refusal("size: is less than fmi2SerializedFMUstateSize told");
+    if (size < serialized_size(numbers)) refuse("size: is less than fmi2SerializedFMUstateSize told");
     serialize(numbers, bytes);
-    return fmi2OK;
   });
 }
 
@@ -267,7 +219,6 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
       *static_cast<State*>(*state) = std::move(numbers);
     else
       *state = new State(std::move(numbers));
-    return fmi2OK;
   });
 }
 
@@ -278,7 +229,6 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     need(unknown, n_unknown, "vUnknown_ref"), need(known, n_known, "vKnown_ref");
     need(known_change, n_known, "dvKnown"), need(unknown_change, n_unknown, "dvUnknown");
     i.directional_derivative(unknown, n_unknown, known, n_known, known_change, unknown_change);
-    return fmi2OK;
   });
 }
 
@@ -287,7 +237,6 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
   return guarded(c, settable, "fmi2SetRealInputDerivatives", [&](Instance& i) {
     need(vr, n, "vr"), need(order, n, "order"), need(value, n, "value");
     i.set_input_derivatives(vr, n, order, value);
-    return fmi2OK;
   });
 }
 
@@ -296,7 +245,6 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
   return guarded(c, after_step, "fmi2GetRealOutputDerivatives", [&](Instance& i) {
     need(vr, n, "vr"), need(order, n, "order"), need(value, n, "value");
     i.output_derivatives(vr, n, order, value);
-    return fmi2OK;
   });
 }
 
@@ -305,7 +253,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real length, fmi2Boole
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
-  return guarded(c, 0, "fmi2CancelStep", [](Instance&) { return fmi2OK; });
+  return guarded(c, 0, "fmi2CancelStep", [](Instance&) {});
 }
 
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind, fmi2Status*) {
@@ -317,7 +265,6 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Rea
   return guarded(c, after_step, "fmi2GetRealStatus", [&](Instance& i) {
     need(value, 1, "value");
     *value = i.last_successful_time();
-    return fmi2OK;
   });
 }
 
@@ -330,7 +277,6 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
   return guarded(c, after_step, "fmi2GetBooleanStatus", [&](Instance& i) {
     need(value, 1, "value");
     *value = i.wants_to_end();
-    return fmi2OK;
   });
 }
 

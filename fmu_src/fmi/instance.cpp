@@ -2,35 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
-#include <utility>
 
 namespace zspring::fmi {
 namespace {
 
-template <class... Values>
-[[noreturn]] void refuse(const char* format, Values... values) {
-  char text[512];
-  std::snprintf(text, sizeof text, format, values...);
-  throw Refusal(text);
-}
-
 // "m1 = -1 kg"
-std::string described(const Variable& v, double x) {
-  char text[160];
+Text described(const Variable& v, double x) {
   const bool has_unit = *v.unit && std::strcmp(v.unit, "1") != 0;
-  std::snprintf(text, sizeof text, "%s = %.10g%s%s", v.name, x, has_unit ? " " : "", has_unit ? v.unit : "");
-  return text;
-}
-
-void check_value(const Variable& v, double x) {
-  if (!std::isfinite(x)) refuse("%s: must be a finite number", described(v, x).c_str());
-  if (v.type != Type::Real && x != std::round(x)) refuse("%s: must be a whole number", described(v, x).c_str());
-  if (*v.allowed && (x < v.min || x > v.max)) refuse("%s: must be one of %s", described(v, x).c_str(), v.allowed);
-  if (x < v.min) refuse("%s: must be at least %.10g", described(v, x).c_str(), v.min);
-  if (x > v.max) refuse("%s: must be at most %.10g", described(v, x).c_str(), v.max);
+  return text("%s = %.10g%s%s", v.name, x, has_unit ? " " : "", has_unit ? v.unit : "");
 }
 
 double finite(const Variable& v, double derivative) {
@@ -44,6 +25,14 @@ bool same_type(Type a, Type b) {
 }
 
 }  // namespace
+
+void check_value(const Variable& v, double x) {
+  if (!std::isfinite(x)) refuse("%s: must be a finite number", described(v, x).chars);
+  if (v.type != Type::Real && x != std::round(x)) refuse("%s: must be a whole number", described(v, x).chars);
+  if (*v.allowed && (x < v.min || x > v.max)) refuse("%s: must be one of %s", described(v, x).chars, v.allowed);
+  if (x < v.min) refuse("%s: must be at least %.10g", described(v, x).chars, v.min);
+  if (x > v.max) refuse("%s: must be at most %.10g", described(v, x).chars, v.max);
+}
 
 const Variable& Instance::variable(unsigned reference, Type type) const {
   if (reference >= variable_count) refuse("value reference %u: must be below %u", reference, variable_count);
@@ -59,21 +48,21 @@ void Instance::reset() {
   inputs_ = {};
   for (const Variable& v : variables)
     if (v.is_input()) v.signal(inputs_).value = v.start;
-  experiment_ = {};
+  has_stop_ = false;
+  stop_ = 0;
   time_ = 0;
   stepped_ = false;
   forget_discard();
   simulation_.reset();
-  outputs_.reset();
 }
 
-void Instance::setup_experiment(const Experiment& e) {
-  if (!std::isfinite(e.start)) refuse("startTime = %g s: must be a finite number", e.start);
-  if (e.has_stop && !(e.stop >= e.start))
-    refuse("stopTime = %.10g s: must not be before startTime = %.10g s", e.stop, e.start);
-  experiment_ = e;
-  if (std::isinf(e.stop)) experiment_.has_stop = false, experiment_.stop = 0;
-  time_ = e.start;
+void Instance::setup_experiment(double start, bool has_stop, double stop) {
+  if (!std::isfinite(start)) refuse("startTime = %g s: must be a finite number", start);
+  if (has_stop && !(stop >= start))
+    refuse("stopTime = %.10g s: must not be before startTime = %.10g s", stop, start);
+  has_stop_ = has_stop && !std::isinf(stop);
+  stop_ = has_stop_ ? stop : 0;
+  time_ = start;
 }
 
 void Instance::enter_initialization() { phase = Initialization; }
@@ -84,42 +73,28 @@ void Instance::exit_initialization() {
 }
 
 void Instance::terminate() {
-  char text[160];
-  simulation().describe_run(text, sizeof text);
-  log.write(fmi2OK, Category::logSolver, text);
+  log.write(fmi2OK, Category::logSolver, simulation().describe_run());
   phase = Terminated;
 }
 
 Simulation& Instance::simulation() {
-  if (!simulation_) {
-    simulation_.emplace(parameters_, inputs_);
-    modelled_ = parameters_;
-    outputs_.reset();
-  }
+  if (!simulation_) simulation_.emplace(parameters_, inputs_);
   return *simulation_;
-}
-
-bool Instance::is_model_of(const Parameters& p) const {
-  return std::all_of(std::begin(variables), std::end(variables), [&](const Variable& v) {
-    return !v.is_parameter() || v.tunable || v.get(modelled_) == v.get(p);
-  });
 }
 
 double Instance::get(unsigned reference, Type type) {
   const Variable& v = variable(reference, type);
   if (v.is_parameter()) return v.get(parameters_);
   if (v.is_input()) return v.signal(inputs_).value;
-  if (v.binding.calculated) return v.get(simulation().calculated());
-  Simulation& s = simulation();
-  if (!outputs_) outputs_ = s.outputs();
-  const double y = v.get(*outputs_);
+  if (!v.is_output()) return v.get(simulation().calculated());
+  const double y = v.get(simulation().outputs());
   return type == Type::Real ? y : std::min<double>(y, std::numeric_limits<fmi2Integer>::max());
 }
 
 void Instance::check_settable(const Variable& v) const {
   if (v.causality == Causality::Output || v.causality == Causality::CalculatedParameter)
     refuse("%s: is calculated by the FMU and cannot be set", v.name);
-  if (v.causality == Causality::Parameter && !v.tunable && !(phase & (Instantiated | Initialization)))
+  if (v.causality == Causality::Parameter && !v.tunable && !(phase & before_start))
     refuse("%s: is a fixed parameter and can be set before the end of initialization only", v.name);
 }
 
@@ -137,7 +112,10 @@ void Instance::set(const fmi2ValueReference references[], size_t n, Type type, c
     else
       v.signal(inputs_).value = values[i];
   }
-  if (phase & (Instantiated | Initialization)) simulation_.reset();
+  if (phase & before_start)
+    simulation_.reset();
+  else
+    simulation_->forget_outputs();
 }
 
 void Instance::set_input_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[],
@@ -161,7 +139,7 @@ void Instance::output_derivatives(const fmi2ValueReference references[], size_t 
                                   double values[]) {
   for (size_t i = 0; i < n; ++i) {
     const Variable& v = variable(references[i], Type::Real);
-    if (!v.binding.output) refuse("%s: is no output and has no output derivatives", v.name);
+    if (!v.is_output()) refuse("%s: is no output and has no output derivatives", v.name);
     if (orders[i] != 1) refuse("%s: derivative of order %d; must be 1", v.name, orders[i]);
   }
   const Outputs rates = simulation().output_rates();
@@ -189,7 +167,7 @@ void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t
   const Outputs y = simulation().outputs_change(change);
   for (size_t i = 0; i < n_unknown; ++i) {
     const Variable& v = variables[unknown[i]];
-    result[i] = v.binding.output ? finite(v, v.get(y)) : 0;
+    result[i] = v.is_output() ? finite(v, v.get(y)) : 0;
   }
 }
 
@@ -200,121 +178,30 @@ fmi2Status Instance::step(double from, double length) {
   if (!(std::abs(from - time_) <= rounding))
     refuse("currentCommunicationPoint = %.17g s: must be %.17g s, where the last step ended", from, time_);
   const double to = from + length;
-  if (experiment_.has_stop && to > experiment_.stop + rounding)
-    refuse("communicationStepSize = %.10g s: leads to %.17g s, past stopTime = %.17g s", length, to,
-           experiment_.stop);
+  if (has_stop_ && to > stop_ + rounding)
+    refuse("communicationStepSize = %.10g s: leads to %.17g s, past stopTime = %.17g s", length, to, stop_);
 
-  char text[320];
   Simulation& s = *simulation_;
-  if (!stepped_ && log.enabled(Category::logStatusWarning) && s.describe_imbalance(text, sizeof text))
-    log.write(fmi2OK, Category::logStatusWarning, text);
-  AdvanceFailure failure;
-  outputs_.reset();
-  if (!s.advance(parameters_, inputs_, length, failure)) {
+  if (!stepped_ && log.enabled(Category::logStatusWarning))
+    if (const std::optional<Text> imbalance = s.describe_imbalance())
+      log.write(fmi2OK, Category::logStatusWarning, *imbalance);
+  if (const std::optional<Discard> discard = s.advance(inputs_, length)) {
     phase = StepFailed;
-    wants_to_end_ = failure.at_end || length == discarded_length_;
+    wants_to_end_ = discard->at_end || length == discarded_length_;
     discarded_length_ = length;
-    std::snprintf(text, sizeof text, "t = %.10g s: %s. The state is that of %.10g s", from + failure.time,
-                  failure.text, time_);
-    log.write(fmi2Discard, Category::logStatusDiscard, text);
+    log.write(
+        fmi2Discard, Category::logStatusDiscard,
+        text("t = %.10g s: %s. The state is that of %.10g s", from + discard->time, discard->reason.chars, time_));
     return fmi2Discard;
   }
   stepped_ = true;
   forget_discard();
   phase = StepComplete;
   time_ = to;
-  if (log.enabled(Category::logSolver)) {
-    const int n = std::snprintf(text, sizeof text, "t = %.10g s: ", time_);
-    if (s.describe_step(text + n, static_cast<int>(sizeof text) - n)) log.write(fmi2OK, Category::logSolver, text);
-  }
+  if (log.enabled(Category::logSolver))
+    if (const std::optional<Text> step = s.describe_step())
+      log.write(fmi2OK, Category::logSolver, text("t = %.10g s: %s", time_, step->chars));
   return fmi2OK;
-}
-
-template <class Visitor>
-void Instance::visit_values(Visitor&& f) {
-  for (const Variable& v : variables) {
-    if (!v.is_parameter()) continue;
-    double x = v.get(parameters_);
-    f(x);
-    check_value(v, x);
-    v.set(parameters_, x);
-  }
-  visit(inputs_, f);
-  f(experiment_.start), f(experiment_.stop), f(experiment_.has_stop), f(time_), f(stepped_);
-}
-
-namespace {
-
-Phase phase_of(double number) {
-  for (Phase p : {Instantiated, Initialization, StepComplete, StepFailed, Terminated, Error})
-    if (number == p) return p;
-  refuse("FMU state: %g is no state of an FMU", number);
-}
-
-struct Writer {
-  std::vector<double>& out;
-  void operator()(double x) { out.push_back(x); }
-  void operator()(bool x) { out.push_back(x); }
-  template <class Vector>
-  void operator()(const Vector& x) {
-    out.insert(out.end(), x.data(), x.data() + x.size());
-  }
-};
-
-struct Reader {
-  const double* in;
-  const double* end;
-  const double* next(std::ptrdiff_t n) {
-    if (end - in < n) throw Refusal("FMU state: ends before all its values are there");
-    return std::exchange(in, in + n);
-  }
-  void operator()(double& x) { x = *next(1); }
-  void operator()(bool& x) { x = *next(1) != 0; }
-  template <class Vector>
-  void operator()(Vector& x) {
-    std::copy_n(next(x.size()), x.size(), x.data());
-  }
-};
-
-}  // namespace
-
-std::vector<double> Instance::snapshot() {
-  std::vector<double> numbers{static_cast<double>(phase)};
-  Writer write{numbers};
-  visit_values(write);
-  // A simulation that parameters or inputs have outdated is not part of the state.
-  write(simulation_.has_value());
-  if (simulation_) simulation_->visit_state(write);
-  return numbers;
-}
-
-void Instance::restore(const std::vector<double>& numbers) {
-  Reader read{numbers.data(), numbers.data() + numbers.size()};
-  double stored_phase;
-  read(stored_phase);
-  phase = phase_of(stored_phase);
-  visit_values(read);
-  bool has_simulation;
-  read(has_simulation);
-  outputs_.reset();
-  forget_discard();
-  // Hosts that iterate restore at every step: a model of the same parameters is kept, only its state is replaced.
-  if (!has_simulation || (simulation_ && !is_model_of(parameters_))) simulation_.reset();
-  if (has_simulation) simulation().visit_state(read);
-  if (read.in != read.end) throw Refusal("FMU state: goes on after its last value");
-}
-
-void Instance::check_state(const std::vector<double>& numbers) {
-  for (double x : numbers)
-    if (!std::isfinite(x)) throw Refusal("FMU state: holds a value that is not finite");
-  Instance trial({}, "", false);
-  trial.restore(numbers);
-  if (!trial.simulation_) {
-    if (trial.phase & (StepComplete | StepFailed | Terminated)) throw Refusal("FMU state: lacks its simulation");
-    return;
-  }
-  if (!trial.simulation_->is_possible() || !all_finite(trial.simulation_->outputs()))
-    throw Refusal("FMU state: holds numbers that no simulation leaves behind");
 }
 
 }  // namespace zspring::fmi

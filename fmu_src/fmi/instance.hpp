@@ -5,42 +5,25 @@
 #pragma once
 
 #include <optional>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "log.hpp"
+#include "state_machine.hpp"
 #include "variables.hpp"
 
 namespace zspring::fmi {
 
-// The states of section 4.2.3, as bits so that a call can name those in which it is allowed.
-enum Phase : unsigned {
-  Instantiated = 1,
-  Initialization = 2,
-  StepComplete = 4,
-  StepFailed = 8,  // after fmi2Discard; the state is that before the step, so stepping on is possible
-  Terminated = 16,
-  Error = 32,
-};
-
-class Refusal : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-struct Experiment {
-  double start = 0;
-  double stop = 0;
-  bool has_stop = false;
-};
+// Throws Refusal where the variable cannot have this value.
+void check_value(const Variable& v, double x);
 
 class Instance {
  public:
   Instance(const fmi2CallbackFunctions& functions, const char* name, bool debug) : log(functions, name, debug) {
     reset();
   }
+  Instance(const Instance&) = delete;
+  Instance& operator=(const Instance&) = delete;
 
-  void setup_experiment(const Experiment& e);
+  void setup_experiment(double start, bool has_stop, double stop);
   void enter_initialization();
   void exit_initialization();
   void terminate();
@@ -63,11 +46,11 @@ class Instance {
   // discarded step for ever unless the FMU asks for the end.
   bool wants_to_end() const { return wants_to_end_; }
 
-  // Everything but the log settings, as numbers.
-  std::vector<double> snapshot();
-  void restore(const std::vector<double>& numbers);
+  // fmu_state.cpp. Everything but the log settings, as numbers.
+  Numbers snapshot();
+  void restore(const Numbers& numbers);
   // Throws where numbers from outside the process could not be restored.
-  static void check_state(const std::vector<double>& numbers);
+  static void check_state(const Numbers& numbers);
 
   Phase phase;
   Log log;
@@ -77,20 +60,18 @@ class Instance {
   void check_settable(const Variable& v) const;
   Simulation& simulation();  // built anew where parameters or inputs changed before the first step
   void forget_discard() { wants_to_end_ = false, discarded_length_ = 0; }
-  bool is_model_of(const Parameters& p) const;
   template <class Visitor>
-  void visit_values(Visitor&& f);
+  bool visit_values(Visitor&& f);
 
   Parameters parameters_;
   Inputs inputs_;
-  Experiment experiment_;
+  bool has_stop_;
+  double stop_;  // s, 0 where there is none
   double time_;
   bool stepped_;
   bool wants_to_end_;
-  double discarded_length_;  // s, of the last step if that was discarded; else 0
-  std::optional<Simulation> simulation_;
-  Parameters modelled_;             // of simulation_
-  std::optional<Outputs> outputs_;  // of the present state, made when asked for
+  double discarded_length_;               // s, of the last step if that was discarded; else 0
+  std::optional<Simulation> simulation_;  // refers to parameters_
 };
 
 }  // namespace zspring::fmi

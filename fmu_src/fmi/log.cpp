@@ -22,14 +22,14 @@ Log::Log(const fmi2CallbackFunctions& functions, const char* instance_name, bool
       instance_name_(instance_name),
       mask_(debug ? all : always) {}
 
-void Log::write(fmi2Status status, Category category, const char* text) const {
+void Log::write(fmi2Status status, Category category, const Text& message) const {
   if (!logger_ || !enabled(category)) return;
   // Hosts read the message as a printf format (%), and #r1# in it as a variable (section 2.1.5).
-  char escaped[1024];
+  char escaped[2 * sizeof message.chars];
   size_t n = 0;
-  for (; *text && n + 2 < sizeof escaped; ++text) {
-    if (*text == '%' || *text == '#') escaped[n++] = *text;
-    escaped[n++] = *text;
+  for (const char* c = message.chars; *c; ++c) {
+    if (*c == '%' || *c == '#') escaped[n++] = *c;
+    escaped[n++] = *c;
   }
   escaped[n] = '\0';
   logger_(environment_, instance_name_.c_str(), status, names_of_categories[static_cast<int>(category)], escaped);

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "common/text.hpp"
 #include "fmi2FunctionTypes.h"
 #include "variables.inc"
 
@@ -17,8 +18,8 @@ class Log {
   // Copies what it needs: the host's pointers live for the call only.
   Log(const fmi2CallbackFunctions& functions, const char* instance_name, bool debug);
 
-  // `text` is plain; it reaches the host as a format without directives.
-  void write(fmi2Status status, Category category, const char* text) const;
+  // The text is plain; it reaches the host as a format without directives.
+  void write(fmi2Status status, Category category, const Text& message) const;
   bool enabled(Category c) const { return mask_ >> static_cast<int>(c) & 1; }
 
   // On: just the named categories, all when none is named; off: not those. Why a call was refused or discarded is

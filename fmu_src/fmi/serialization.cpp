@@ -20,14 +20,14 @@ struct Header {
 static_assert(sizeof(ZSPRING_GUID) <= sizeof(Header::guid) && sizeof(Header) == 64);
 
 // FNV-1a, to notice damage, not to resist an attacker.
-std::uint64_t checksum(const std::vector<double>& numbers) {
+std::uint64_t checksum(const Numbers& numbers) {
   std::uint64_t hash = 14695981039346656037u;
   const auto* byte = reinterpret_cast<const unsigned char*>(numbers.data());
   for (std::size_t i = 0; i < numbers.size() * sizeof(double); ++i) hash = (hash ^ byte[i]) * 1099511628211u;
   return hash;
 }
 
-Header header_of(const std::vector<double>& numbers) {
+Header header_of(const Numbers& numbers) {
   Header h{};
   std::memcpy(h.magic, magic, sizeof magic);
   std::memcpy(h.guid, ZSPRING_GUID, sizeof(ZSPRING_GUID));
@@ -38,31 +38,28 @@ Header header_of(const std::vector<double>& numbers) {
 
 }  // namespace
 
-std::size_t serialized_size(const std::vector<double>& numbers) {
-  return sizeof(Header) + numbers.size() * sizeof(double);
-}
+std::size_t serialized_size(const Numbers& numbers) { return sizeof(Header) + numbers.size() * sizeof(double); }
 
-void serialize(const std::vector<double>& numbers, char* bytes) {
+void serialize(const Numbers& numbers, char* bytes) {
   const Header h = header_of(numbers);
   std::memcpy(bytes, &h, sizeof h);
   std::memcpy(bytes + sizeof h, numbers.data(), numbers.size() * sizeof(double));
 }
 
-std::vector<double> deserialize(const char* bytes, std::size_t size) {
+Numbers deserialize(const char* bytes, std::size_t size) {
   Header h;
-  if (size < sizeof h) throw Refusal("serialized state: too short to be one");
+  if (size < sizeof h) refuse("serialized state: too short to be one");
   std::memcpy(&h, bytes, sizeof h);
   if (std::memcmp(h.magic, magic, sizeof magic) != 0 ||
       std::memcmp(h.guid, ZSPRING_GUID, sizeof(ZSPRING_GUID)) != 0)
-    throw Refusal(
+    refuse(
         "serialized state: comes from another FMU or another version of this one; must have GUID " ZSPRING_GUID);
   if (h.count != (size - sizeof h) / sizeof(double) || (size - sizeof h) % sizeof(double) != 0)
-    throw Refusal("serialized state: its length is not what its header tells; it was cut or extended");
-  std::vector<double> numbers(h.count);
+    refuse("serialized state: its length is not what its header tells; it was cut or extended");
+  Numbers numbers(h.count);
   std::memcpy(numbers.data(), bytes + sizeof h, numbers.size() * sizeof(double));
   const Header expected = header_of(numbers);
-  if (std::memcmp(&expected, &h, sizeof h) != 0)
-    throw Refusal("serialized state: damaged, its checksum does not fit");
+  if (std::memcmp(&expected, &h, sizeof h) != 0) refuse("serialized state: damaged, its checksum does not fit");
   return numbers;
 }
 

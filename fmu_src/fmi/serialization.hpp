@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+
+#include "common/numbers.hpp"
 
 namespace zspring::fmi {
 
-std::size_t serialized_size(const std::vector<double>& numbers);
-void serialize(const std::vector<double>& numbers, char* bytes);
+std::size_t serialized_size(const Numbers& numbers);
+void serialize(const Numbers& numbers, char* bytes);
 
 // Throws Refusal for bytes of another model or version, of a wrong length, or damaged.
-std::vector<double> deserialize(const char* bytes, std::size_t size);
+Numbers deserialize(const char* bytes, std::size_t size);
 
 }  // namespace zspring::fmi

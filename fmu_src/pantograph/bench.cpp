@@ -7,13 +7,15 @@ namespace zspring {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double fewest_steps_per_period = 16;
-
-double steps_in_period(double frequency, double largest_step) {
-  return std::max(fewest_steps_per_period, std::ceil(1 / (frequency * largest_step) - 1e-9));
-}
+constexpr Count fewest_steps_per_period = 16;
 
 }  // namespace
+
+Count steps_in_period(double frequency, double largest_step) {
+  constexpr double most = 1e15;  // whatever a damaged state says
+  const double needed = std::min(most, std::ceil(1 / (frequency * largest_step) - 1e-9));
+  return std::max(fewest_steps_per_period, static_cast<Count>(needed));
+}
 
 Ramp Ramp::to(double target, double value, double slope, double curvature, double length) {
   const double rise = target - value, d = slope * length, c = 0.5 * curvature * length * length;
@@ -48,8 +50,7 @@ bool BenchState::is_possible(double largest_step) const {
   if (frequency == 0) return true;
   const double step = 1 / (frequency * steps_per_period);
   return frequency > 0 && steps_per_period == steps_in_period(frequency, largest_step) &&
-         ramp_steps >= steps_per_period && node >= 0 && node == std::floor(node) && offset >= 0 && offset < step &&
-         std::abs(carry) < step && periods >= 0;
+         ramp_steps >= steps_per_period && offset >= 0 && offset < step && std::abs(carry) < step;
 }
 
 double Bench::grid_step(double frequency, double largest_step) {
@@ -66,7 +67,7 @@ double Bench::phase_at(double s) const {
   const double ramp_end = b_.ramp_steps * grid_step();
   if (s <= ramp_end) return b_.phase + 2 * pi * b_.speed.integral(s);
   // After the ramp from the node count, so that no rounding grows over many periods.
-  const double node = std::fmod(b_.node - b_.ramp_steps, b_.steps_per_period);
+  const Count node = (b_.node - b_.ramp_steps) % b_.steps_per_period;
   const double beyond = (s - elapsed() + b_.offset) / grid_step();
   return b_.phase + 2 * pi * (b_.speed.integral(ramp_end) + (node + beyond) / b_.steps_per_period);
 }
@@ -101,7 +102,7 @@ void Bench::tune(double frequency, double acceleration, double largest_step) {
   b_.steps_per_period = steps_in_period(frequency, largest_step);
   const double slower = std::max(1.0, frequency / std::max(f, 1e-3 * frequency));
   // Whole periods: a host that steps by periods then stays on the grid.
-  b_.ramp_steps = b_.steps_per_period * std::round(slower);
+  b_.ramp_steps = b_.steps_per_period * std::lround(slower);
   const double length = b_.ramp_steps * grid_step();
   b_.amplitude = Ramp::to(target, X, dX, ddX, length);
   b_.speed = Ramp::to(frequency, f, df, ddf, length);
@@ -120,8 +121,8 @@ void Bench::advance(double h, bool reaches_node, Phasor begin, double force_begi
   }
   b_.offset = 0;
   b_.node += 1;
-  const double done = b_.node - b_.ramp_steps;
-  if (done > 0 && std::fmod(done, b_.steps_per_period) == 0) finish_period();
+  const Count done = b_.node - b_.ramp_steps;
+  if (done > 0 && done % b_.steps_per_period == 0) finish_period();
 }
 
 void Bench::finish_period() {

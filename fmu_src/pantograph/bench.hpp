@@ -32,13 +32,13 @@ struct BenchState {
   double frequency = 0, acceleration = 0;  // the programme's targets; frequency 0: none yet
   Ramp amplitude, speed;                   // m; Hz
   double phase = 0;                        // rad, where the ramp began
-  double steps_per_period = 0;
-  double ramp_steps = 0;
-  double node = 0;                  // grid steps done since the ramp began
+  Count steps_per_period = 0;
+  Count ramp_steps = 0;
+  Count node = 0;                   // grid steps done since the ramp began
   double offset = 0;                // s beyond that node, where a communication point cut a step
   double carry = 0;                 // s, rounding left over by the last communication step
   double sin_sum = 0, cos_sum = 0;  // N, of the running period
-  double periods = 0;
+  Count periods = 0;
   double H_re = 0, H_im = 0;  // m/N
   double change = 1;
 
@@ -59,6 +59,9 @@ void visit(BenchState& b, Visitor&& f) {
   f(b.phase), f(b.steps_per_period), f(b.ramp_steps), f(b.node), f(b.offset), f(b.carry);
   f(b.sin_sum), f(b.cos_sum), f(b.periods), f(b.H_re), f(b.H_im), f(b.change);
 }
+
+// Internal steps in a period of the grid: the fewest whole number of at most `largest_step` s, 16 at least.
+Count steps_in_period(double frequency, double largest_step);
 
 struct Phasor {
   double sine, cosine;

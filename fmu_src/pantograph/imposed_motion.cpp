@@ -1,5 +1,7 @@
 #include "imposed_motion.hpp"
 
+#include <algorithm>
+
 namespace zspring {
 
 MotionState MotionState::variation() const {
@@ -21,7 +23,7 @@ ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, doub
   if (input.has_curvature) {
     Samples& given = end_.curvatures;
     given.append(start.positions.last_length, input.curvature);
-    given.count = std::min(given.count, 3.0);
+    given.count = std::min<Count>(given.count, 3);
     // What was seen over short steps tells nothing of the end of a much longer one.
     if (given.count > 1 && length <= 2 * given.age[1])
       curvature_change_ = Interpolant(given).value(length) - input.curvature;

@@ -1,6 +1,6 @@
 #include "mechanics.hpp"
 
-#include <cstdio>
+#include "common/failure.hpp"
 
 namespace zspring {
 namespace {
@@ -33,10 +33,9 @@ FrictionLaw friction_law(const Parameters& p) {
 Mechanics::Mechanics(const Parameters& p) : parameters(p), law(friction_law(p)) {
   const bool bounded = law == FrictionLaw::Tanh || law == FrictionLaw::Coulomb;
   if (law == FrictionLaw::Coulomb && p.solver.tangent != Tangent::Resolvent)
-    throw ParameterError("solver.tangent: with friction Coulomb only Resolvent is allowed, the law has no slope");
+    refuse("solver.tangent: with friction Coulomb only Resolvent is allowed, the law has no slope");
   if (!(p.m3 + p.c2 + p.c3 + p.k2 + p.k3 > 0))
-    throw ParameterError(
-        "m3 = 0 kg: must be more than 0 where c2, c3, k2 and k3 are all 0, nothing holds the lower frame");
+    refuse("m3 = 0 kg: must be more than 0 where c2, c3, k2 and k3 are all 0, nothing holds the lower frame");
 
   moment_bound.setConstant(bounded ? p.zspring.Mf : 1);
   mass << p.m1, p.zspring.J1, p.zspring.J2, p.m2, p.m3;
@@ -52,42 +51,37 @@ Mechanics::Mechanics(const Parameters& p) : parameters(p), law(friction_law(p)) 
   static_ = zspring_static_state(p.zspring, load);
   stiffness = {static_.theta, static_.k_locked, static_.k_free};
   rest[ALPHA] = rest[BETA] = static_.theta;
-  ElementResponse at_rest;
-  if (!zspring_response(p.zspring, static_.theta, static_.theta, static_.gap, at_rest)) {
-    char text[120];
-    std::snprintf(text, sizeof text,
-                  "zspring.l0 = %g m: the spring has no length in the static state; enlarge l0 or d",
-                  p.zspring.l0);
-    throw ParameterError(text);
-  }
+  const auto at_rest = zspring_response(p.zspring, static_.theta, static_.theta, static_.gap);
+  if (!at_rest)
+    refuse("zspring.l0 = %g m: the spring has no length in the static state; enlarge l0 or d", p.zspring.l0);
   // Taken from the same code as in motion, so that the state of rest is balanced to the last bit.
-  head_preload_ = at_rest.force;
-  strain_at_rest_ = at_rest.energy;
-  static_tangent = p.suspension == Suspension::LinearLocked ? vertical_spring(static_.k_locked) : at_rest.tangent;
-  preload.head<4>() += head_preload_;
+  at_rest_ = *at_rest;
+  static_tangent = p.suspension == Suspension::LinearLocked ? vertical_spring(static_.k_locked) : at_rest_.tangent;
+  preload.head<4>() += at_rest_.force;
 }
 
-bool Mechanics::head_response(const Vector5& q, ElementResponse& out) const {
+std::optional<ElementResponse> Mechanics::head_response(const Vector5& q) const {
   if (parameters.suspension == Suspension::ZSpring)
-    return zspring_response(parameters.zspring, q[ALPHA], q[BETA], static_.gap + q[U2] - q[U1], out);
+    return zspring_response(parameters.zspring, q[ALPHA], q[BETA], static_.gap + q[U2] - q[U1]);
   const Vector4 x = q.head<4>() - rest.head<4>();
+  ElementResponse out = at_rest_;
   out.tangent = static_tangent;
-  out.force = head_preload_;
   out.force.noalias() += static_tangent * x;
-  out.energy = strain_at_rest_ + 0.5 * x.dot(head_preload_ + out.force);
-  return true;
+  out.energy = at_rest_.energy + 0.5 * x.dot(at_rest_.force + out.force);
+  const double stretch = out.gradient.dot(x);
+  out.length += stretch;
+  out.tension += parameters.zspring.k * stretch;
+  return out;
 }
 
-bool Mechanics::springs(const Vector5& q, Vector5& force, Matrix4& head_tangent) const {
-  ElementResponse head;
-  if (!head_response(q, head)) return false;
-  head_tangent = head.tangent;
+Vector5 Mechanics::spring_force(const Vector5& q, const ElementResponse& head) const {
   const double f2 = parameters.k2 * (q[U2] - q[U3]);
-  force.head<4>() = head.force - head_preload_;
-  force[U1] -= parameters.static_force;
-  force[U2] += f2;
-  force[U3] = parameters.k3 * q[U3] - f2;
-  return true;
+  Vector5 f;
+  f.head<4>() = head.force - at_rest_.force;
+  f[U1] -= parameters.static_force;
+  f[U2] += f2;
+  f[U3] = parameters.k3 * q[U3] - f2;
+  return f;
 }
 
 Vector5 Mechanics::spring_force_change(const Matrix4& head_tangent, const Vector5& dq) const {
@@ -114,25 +108,9 @@ double Mechanics::damping_power(const Vector5& v) const {
 
 double Mechanics::kinetic_energy(const Vector5& v) const { return 0.5 * v.dot(mass.cwiseProduct(v)); }
 
-double Mechanics::strain_energy(const Vector5& q) const {
-  ElementResponse head;
-  if (!head_response(q, head)) return 0;  // not reached: accepted states have a direction
+double Mechanics::strain_energy(const Vector5& q, const ElementResponse& head) const {
   const double x = q[U2] - q[U3];
-  return head.energy - strain_at_rest_ + 0.5 * parameters.k2 * x * x + 0.5 * parameters.k3 * q[U3] * q[U3];
-}
-
-ZSpringGeometry Mechanics::spring(const Vector5& q) const {
-  ZSpringGeometry out{0, 0, Vector4::Zero()};
-  if (parameters.suspension == Suspension::Linear) return out;
-  if (parameters.suspension == Suspension::ZSpring) {
-    zspring_geometry(parameters.zspring, q[ALPHA], q[BETA], static_.gap + q[U2] - q[U1], out);
-    return out;
-  }
-  zspring_geometry(parameters.zspring, static_.theta, static_.theta, static_.gap, out);
-  const double stretch = out.gradient.dot(q.head<4>() - rest.head<4>());
-  out.length += stretch;
-  out.tension += parameters.zspring.k * stretch;
-  return out;
+  return head.energy - at_rest_.energy + 0.5 * parameters.k2 * x * x + 0.5 * parameters.k3 * q[U3] * q[U3];
 }
 
 }  // namespace zspring

@@ -9,15 +9,14 @@
 
 #include <Eigen/Core>
 
-#include "friction.hpp"
 #include "parameters.hpp"
+#include "resolvent.hpp"
 #include "zspring.hpp"
 
 namespace zspring {
 
 using Vector2 = Eigen::Matrix<double, 2, 1>;
 using Vector5 = Eigen::Matrix<double, 5, 1>;
-using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
 enum Dof { U1, ALPHA, BETA, U2, U3 };
 
@@ -39,23 +38,22 @@ inline constexpr const char* dof_name[] = {"head", "rod alpha", "rod beta", "upp
 
 class Mechanics {
  public:
-  // Throws ParameterError for parameters that make no solvable model.
+  // Throws Refusal for parameters that make no solvable model. Refers to `p`.
   explicit Mechanics(const Parameters& p);
 
-  // Force and tangent of all springs less the preload, at q. False where the spring has no direction.
-  bool springs(const Vector5& q, Vector5& force, Matrix4& head_tangent) const;
-
+  // Of the head's suspension, preload included; none where the spring has no direction.
+  std::optional<ElementResponse> head_response(const Vector5& q) const;
+  // Of all springs less the preload, with that response.
+  Vector5 spring_force(const Vector5& q, const ElementResponse& head) const;
   Vector5 spring_force_change(const Matrix4& head_tangent, const Vector5& dq) const;
 
   Vector5 damping_force(const Vector5& v) const;
   double damping_power(const Vector5& v) const;
   double kinetic_energy(const Vector5& v) const;
   // Strain energy above that of the static state, J.
-  double strain_energy(const Vector5& q) const;
+  double strain_energy(const Vector5& q, const ElementResponse& head) const;
 
-  ZSpringGeometry spring(const Vector5& q) const;  // zeros with Suspension::Linear
-
-  Parameters parameters;
+  const Parameters& parameters;
   StaticStiffness stiffness;
   FrictionLaw law;
   Vector2 moment_bound;  // N m, scale of s = moment / bound; 1 where the law knows no bound
@@ -66,11 +64,8 @@ class Mechanics {
   double load;             // N, m1 gravity + static_force
 
  private:
-  bool head_response(const Vector5& q, ElementResponse& out) const;
-
   StaticState static_;  // not used with Suspension::Linear
-  Vector4 head_preload_ = Vector4::Zero();
-  double strain_at_rest_ = 0;
+  ElementResponse at_rest_{0, Vector4::Zero(), Matrix4::Zero(), 0, 0, Vector4::Zero()};
 };
 
 }  // namespace zspring

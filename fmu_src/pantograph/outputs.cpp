@@ -9,9 +9,16 @@ Vector5 unbalanced_force(const MechanicalState& s) {
   return f;
 }
 
+// Linear, so of variations too.
 double head_acceleration(const Hht& hht, const MechanicalState& s) {
   if (hht.head_imposed()) return s.boundary.acceleration + s.boundary.acceleration_change;
   return unbalanced_force(s)[U1] / hht.mechanics().mass[U1];
+}
+
+double stretch(const View& x, const MechanicalState& d) { return x.head.gradient.dot(d.q.head<4>()); }
+
+double elastic_change(const View& x, const MechanicalState& d) {
+  return d.q.dot(x.m.spring_force(x.s.q, x.head) + x.m.preload);
 }
 
 }  // namespace
@@ -24,66 +31,36 @@ Vector5 acceleration(const Hht& hht, const MechanicalState& s) {
   return a;
 }
 
-Outputs outputs(const Hht& hht, const MechanicalState& s, const BenchState& bench) {
-  const Mechanics& m = hht.mechanics();
-  const ZSpringGeometry spring = m.spring(s.q);
-  Outputs y{};
-  y.head_z = s.q[U1];
-  y.head_v = s.v[U1];
-  y.head_a = head_acceleration(hht, s);
-  y.upper_frame_z = s.q[U2];
-  y.upper_frame_v = s.v[U2];
-  y.lower_frame_z = s.q[U3];
-  y.lower_frame_v = s.v[U3];
-  y.contact_force = s.contact_force;
-  y.contact_closed = m.parameters.drive != Drive::Wire || s.contact_force > 0;
-  y.alpha = s.q[ALPHA];
-  y.beta = s.q[BETA];
-  y.spring_length = spring.length;
-  y.spring_force = spring.tension;
-  y.moment_alpha = m.moment_bound[0] * s.s[0];
-  y.moment_beta = m.moment_bound[1] * s.s[1];
-  y.kinetic = m.kinetic_energy(s.v);
-  y.elastic = m.strain_energy(s.q);
-  y.dissipated = s.dissipated;
-  y.work = s.work;
-  y.iterations = s.statistics.iterations;
-  y.iterations_max = s.statistics.iterations_max;
-  y.steps = s.statistics.steps;
-  y.refinements = s.statistics.refinements;
-  y.H_re = bench.H_re;
-  y.H_im = bench.H_im;
-  y.H_change = bench.change;
-  y.periods = bench.periods;
-  return y;
-}
+LINEAR(head_dot_z, q[U1])
+LINEAR(head_dot_v, v[U1])
+OUTPUT(head_dot_a, head_acceleration(x.hht, x.s), head_acceleration(x.hht, d))
+LINEAR(upper_frame_dot_z, q[U2])
+LINEAR(upper_frame_dot_v, v[U2])
+LINEAR(lower_frame_dot_z, q[U3])
+LINEAR(lower_frame_dot_v, v[U3])
+LINEAR(contact_dot_force, contact_force)
+DISCRETE(contact_dot_closed, x.m.parameters.drive != Drive::Wire || x.s.contact_force > 0)
+LINEAR(zspring_dot_alpha, q[ALPHA])
+LINEAR(zspring_dot_beta, q[BETA])
+OUTPUT(zspring_dot_length, x.head.length, stretch(x, d))
+OUTPUT(zspring_dot_force, x.head.tension, x.m.parameters.zspring.k* stretch(x, d))
+OUTPUT(zspring_dot_moment_alpha, x.m.moment_bound[0] * x.s.s[0], x.m.moment_bound[0] * d.s[0])
+OUTPUT(zspring_dot_moment_beta, x.m.moment_bound[1] * x.s.s[1], x.m.moment_bound[1] * d.s[1])
+OUTPUT(energy_dot_kinetic, x.m.kinetic_energy(x.s.v), d.v.dot(x.m.mass.cwiseProduct(x.s.v)))
+OUTPUT(energy_dot_elastic, x.m.strain_energy(x.s.q, x.head), elastic_change(x, d))
+LINEAR(energy_dot_dissipated, dissipated)
+LINEAR(energy_dot_work, work)
+DISCRETE(solver_dot_iterations, x.s.statistics.iterations)
+DISCRETE(solver_dot_iterations_max, x.s.statistics.iterations_max)
+DISCRETE(solver_dot_steps, x.s.statistics.steps)
+DISCRETE(solver_dot_refinements, x.s.statistics.refinements)
+DISCRETE(bench_dot_H_re, x.bench.H_re)
+DISCRETE(bench_dot_H_im, x.bench.H_im)
+DISCRETE(bench_dot_change, x.bench.change)
+DISCRETE(bench_dot_periods, x.bench.periods)
+DISCRETE(bench_dot_steps_per_period, steps_in_period(x.m.parameters.bench_frequency, x.m.parameters.solver.step))
 
-Outputs outputs_change(const Hht& hht, const MechanicalState& s, const MechanicalState& d) {
-  const Mechanics& m = hht.mechanics();
-  const ZSpringGeometry spring = m.spring(s.q);
-  const double stretch = spring.gradient.dot(d.q.head<4>());
-  Vector5 spring_force;
-  Matrix4 head_tangent;
-  Outputs y{};
-  y.head_z = d.q[U1];
-  y.head_v = d.v[U1];
-  y.head_a = head_acceleration(hht, d);
-  y.upper_frame_z = d.q[U2];
-  y.upper_frame_v = d.v[U2];
-  y.lower_frame_z = d.q[U3];
-  y.lower_frame_v = d.v[U3];
-  y.contact_force = d.contact_force;
-  y.alpha = d.q[ALPHA];
-  y.beta = d.q[BETA];
-  y.spring_length = stretch;
-  y.spring_force = m.parameters.zspring.k * stretch;
-  y.moment_alpha = m.moment_bound[0] * d.s[0];
-  y.moment_beta = m.moment_bound[1] * d.s[1];
-  y.kinetic = d.v.dot(m.mass.cwiseProduct(s.v));
-  if (m.springs(s.q, spring_force, head_tangent)) y.elastic = d.q.dot(spring_force + m.preload);
-  y.dissipated = d.dissipated;
-  y.work = d.work;
-  return y;
-}
+Outputs outputs(const View& x) { return output_values(x); }
+Outputs outputs_change(const View& x, const MechanicalState& d) { return output_changes(x, d); }
 
 }  // namespace zspring

@@ -2,14 +2,30 @@
 #pragma once
 
 #include "bench.hpp"
+#include "common/outputs.hpp"
 #include "hht.hpp"
 
 namespace zspring {
 
-Outputs outputs(const Hht& hht, const MechanicalState& state, const BenchState& bench);
+// What the definitions in outputs.cpp are written with.
+struct View {
+  View(const Hht& integrator, const MechanicalState& state, const BenchState& analysis)
+      : hht(integrator),
+        m(hht.mechanics()),
+        s(state),
+        bench(analysis),
+        head(m.head_response(s.q).value_or(ElementResponse())) {}
 
-// The variation of the outputs with the variation `d` of `state`; 0 for what only counts or averages.
-Outputs outputs_change(const Hht& hht, const MechanicalState& state, const MechanicalState& d);
+  const Hht& hht;
+  const Mechanics& m;
+  const MechanicalState& s;
+  const BenchState& bench;
+  ElementResponse head;  // there is one: the spring of an accepted state has a direction
+};
+
+Outputs outputs(const View& x);
+// With the variation `d` of the state.
+Outputs outputs_change(const View& x, const MechanicalState& d);
 
 // The true accelerations at this instant, from the balance of forces; HHT's where a mass is 0, m/s2 and rad/s2.
 Vector5 acceleration(const Hht& hht, const MechanicalState& state);

@@ -1,7 +1,7 @@
-// What a user can set and read: parameters, inputs and outputs of the pantograph.
+// What a user can set: parameters and inputs of the pantograph; its outputs are in outputs.cpp.
 //
 // SI units throughout. Vertical quantities are upward positive and measured from the static state under
-// `static_force`; angles in rad. There are no default values here: modelDescription.xml holds them.
+// `static_force`; angles in rad. There are no default values here: the model description holds them.
 #pragma once
 
 #include "common/signal.hpp"
@@ -56,19 +56,13 @@ struct Inputs {
   Signal uplift[3];          // N, on head, upper frame, lower frame
 };
 
-struct Outputs {
-  double head_z, head_v, head_a;
-  double upper_frame_z, upper_frame_v;
-  double lower_frame_z, lower_frame_v;
-  double contact_force;
-  double contact_closed;
-  double alpha, beta;
-  double spring_length, spring_force;
-  double moment_alpha, moment_beta;
-  double kinetic, elastic, dissipated, work;
-  double iterations, iterations_max, steps, refinements;
-  double H_re, H_im, H_change, periods;
-};
+template <class Visitor>
+void visit(Inputs& u, Visitor&& f) {
+  visit(u.contact_force, f);
+  visit(u.head_displacement, f);
+  visit(u.wire_height, f);
+  for (Signal& s : u.uplift) visit(s, f);
+}
 
 // The calculated parameters; all 0 with Suspension::Linear.
 struct StaticStiffness {

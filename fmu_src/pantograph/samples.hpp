@@ -3,11 +3,13 @@
 
 #include <algorithm>
 
+#include "common/statistics.hpp"
+
 namespace zspring {
 
 struct Samples {
   static constexpr int most = 5;
-  double count = 0;
+  Count count = 0;
   double age[most] = {};    // s before the newest sample, ascending, age[0] = 0
   double value[most] = {};  // SI
   double last_length = 0;   // s, of the last append
@@ -28,7 +30,7 @@ struct Samples {
     count = kept + 1;
   }
 
-  bool is_possible() const { return count >= 0 && count <= most && count == static_cast<int>(count); }
+  bool is_possible() const { return count <= most; }
 };
 
 template <class Visitor>

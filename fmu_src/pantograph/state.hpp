@@ -1,6 +1,7 @@
 // Everything that changes in a simulation step: copied to go back, written out to be restored bit for bit.
 #pragma once
 
+#include "common/statistics.hpp"
 #include "mechanics.hpp"
 
 namespace zspring {
@@ -17,22 +18,10 @@ struct Boundary {
   double acceleration_change = 0;
 };
 
-struct Statistics {
-  double iterations = 0;      // Newton iterations, failed attempts included
-  double iterations_max = 0;  // of the worst attempt
-  double steps = 0;           // accepted internal steps
-  double refinements = 0;     // halvings
-};
-
-// HHT's `a` belongs to t + hht_alpha h, not to t: it is the integrator's memory, not an output. Its slope moves it
-// to where the next step expects it when h changes; without that, steps of varying size are of first order.
-// A sliver of a step says little of the slope and would have it magnified by the next.
-inline bool slope_known(double h, double h_last) { return h >= 0.25 * h_last; }
-
 struct MechanicalState {
   Vector5 q = Vector5::Zero();
   Vector5 v = Vector5::Zero();
-  Vector5 a = Vector5::Zero();
+  Vector5 a = Vector5::Zero();  // HHT's memory, common/hht.hpp
   Vector5 a_slope = Vector5::Zero();
   double h = 0;                        // s, of the last step; 0 before the first
   Vector5 internal = Vector5::Zero();  // C v + Fe(q) + Ff(v) - P
@@ -55,7 +44,7 @@ void visit(MechanicalState& s, Visitor&& f) {
   f(s.q), f(s.v), f(s.a), f(s.a_slope), f(s.h), f(s.internal), f(s.s), f(s.contact_force), f(s.dissipated),
       f(s.work), f(s.loss_power);
   visit(s.boundary, f);
-  f(s.statistics.iterations), f(s.statistics.iterations_max), f(s.statistics.steps), f(s.statistics.refinements);
+  visit(s.statistics, f);
 }
 
 }  // namespace zspring

@@ -1,7 +1,8 @@
 #include "zspring.hpp"
 
 #include <cmath>
-#include <cstdio>
+
+#include "common/failure.hpp"
 
 namespace zspring {
 namespace {
@@ -12,7 +13,8 @@ struct Shape {
   double ex, ey;  // unit vector along the spring
 };
 
-inline bool shape(const ZSpringParameters& z, double alpha, double beta, double gap, Shape& s) {
+inline std::optional<Shape> shape(const ZSpringParameters& z, double alpha, double beta, double gap) {
+  Shape s;
   s.sin_a = std::sin(alpha);
   s.cos_a = std::cos(alpha);
   s.sin_b = std::sin(beta);
@@ -20,10 +22,10 @@ inline bool shape(const ZSpringParameters& z, double alpha, double beta, double 
   const double A = z.L1 * s.cos_a + z.L2 * s.cos_b - z.d;
   const double B = gap - z.L1 * s.sin_a - z.L2 * s.sin_b;
   s.length = std::sqrt(A * A + B * B);
-  if (!(s.length > shortest_length)) return false;  // also NaN
+  if (!(s.length > shortest_length)) return std::nullopt;  // also NaN
   s.ex = A / s.length;
   s.ey = B / s.length;
-  return true;
+  return s;
 }
 
 inline Vector4 length_gradient(const ZSpringParameters& z, const Shape& s) {
@@ -32,28 +34,24 @@ inline Vector4 length_gradient(const ZSpringParameters& z, const Shape& s) {
 
 }  // namespace
 
-bool zspring_geometry(const ZSpringParameters& z, double alpha, double beta, double gap, ZSpringGeometry& out) {
-  Shape s;
-  if (!shape(z, alpha, beta, gap, s)) return false;
-  out.length = s.length;
-  out.tension = z.k * (s.length - z.l0);
-  out.gradient = length_gradient(z, s);
-  return true;
-}
-
-bool zspring_response(const ZSpringParameters& z, double alpha, double beta, double gap, ElementResponse& out) {
-  Shape s;
-  if (!shape(z, alpha, beta, gap, s)) return false;
-  const double T = z.k * (s.length - z.l0);
-  const Vector4 n = length_gradient(z, s);
+std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta,
+                                                double gap) {
+  std::optional<ElementResponse> result;
+  const std::optional<Shape> known = shape(z, alpha, beta, gap);
+  if (!known) return result;
+  const Shape& s = *known;
+  ElementResponse& out = result.emplace();
+  const double T = out.tension = z.k * (s.length - z.l0);
+  const Vector4& n = out.gradient = length_gradient(z, s);
   const Vector4 p(-s.ex, z.L1 * (s.ey * s.sin_a - s.ex * s.cos_a), z.L2 * (s.ey * s.sin_b - s.ex * s.cos_b), s.ex);
+  out.length = s.length;
   out.energy = 0.5 * z.k * (s.length - z.l0) * (s.length - z.l0);
   out.force = T * n;
   out.tangent.noalias() = (z.k * n) * n.transpose();
   out.tangent.noalias() += (T / s.length * p) * p.transpose();
   out.tangent(1, 1) += T * z.L1 * (s.ey * s.sin_a - s.ex * s.cos_a);
   out.tangent(2, 2) += T * z.L2 * (s.ey * s.sin_b - s.ex * s.cos_b);
-  return true;
+  return result;
 }
 
 StaticState zspring_static_state(const ZSpringParameters& z, double load) {
@@ -69,16 +67,12 @@ StaticState zspring_static_state(const ZSpringParameters& z, double load) {
 
   const double t = load > 0 ? high : 0;
   const double T = tension(t);
-  if (!(high < steepest) || !(T > 0)) {
-    char text[320];
-    std::snprintf(
-        text, sizeof text,
+  if (!(high < steepest) || !(T > 0))
+    refuse(
         "zspring.d = %g m, zspring.k = %g N/m: no static state with the spring in tension under the load "
         "m1 gravity + static_force = %g N; allowed: d above L1 + L2 + l0 = %g m or a larger load, and k "
         "stiff enough to carry it",
         z.d, z.k, load, z.L1 + z.L2 + z.l0);
-    throw ParameterError(text);
-  }
   StaticState out;
   const double D = z.d * std::sqrt(1 + t * t);
   const double s2 = t * t / (1 + t * t), c2 = 1 / (1 + t * t);

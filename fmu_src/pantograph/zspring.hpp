@@ -14,6 +14,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "parameters.hpp"
 
@@ -27,12 +28,8 @@ struct ElementResponse {
   double energy;
   Vector4 force;
   Matrix4 tangent;
-};
-
-struct ZSpringGeometry {
-  double length;     // m
-  double tension;    // N
-  Vector4 gradient;  // d length / d(u1, alpha, beta, u2)
+  double length, tension;  // m, N, of the spring
+  Vector4 gradient;        // of its length
 };
 
 // Rods and spring collinear at `theta` under the load that the head carries, T > 0.
@@ -46,14 +43,13 @@ struct StaticState {
 };
 
 // `gap` is the absolute vertical distance u2 - u1, m. Below `shortest_length` the direction of the spring,
-// and with it the force, is not defined: false is returned.
-bool zspring_geometry(const ZSpringParameters& z, double alpha, double beta, double gap, ZSpringGeometry& out);
-bool zspring_response(const ZSpringParameters& z, double alpha, double beta, double gap, ElementResponse& out);
+// and with it the force, is not defined: there is no answer.
+std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta, double gap);
 
 constexpr double shortest_length = 1e-9;  // m
 
 // The unique root of k (d/cos(theta) - L1 - L2 - l0) sin(theta) = load with the spring in tension; `load` in N
-// is what hangs on the head, m1 g + F0. Throws ParameterError where there is none: springs in compression or
+// is what hangs on the head, m1 g + F0. Throws Refusal where there is none: springs in compression or
 // rods that overlap have no stable static state.
 StaticState zspring_static_state(const ZSpringParameters& z, double load);
 

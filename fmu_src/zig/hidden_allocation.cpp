@@ -1,6 +1,6 @@
-// For macOS, compiled into the libraries that zig links: its linker knows no list of exports there and would export
-// the allocation functions of the C++ library, which are visible by the language's rules. These take their place
-// and are hidden, with the compiler's -fvisibility-global-new-delete=force-hidden.
+// For macOS, compiled into the libraries that zig links: its linker knows no list of exports there and would
+// export the allocation functions of the C++ library, which are visible by the language's rules. These take their
+// place and are hidden, with the compiler's -fvisibility-global-new-delete=force-hidden.
 #include <cstdlib>
 #include <new>
 

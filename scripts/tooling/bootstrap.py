@@ -41,19 +41,14 @@ PACKAGE_SOURCES = [
     "LICENSE",
     "README.md",
     "modelDescription.xml",
+    "modelDescription.catenary.xml",
     "pyproject.toml",
     "fmu_src",
     "resources",
     "scripts/zspring",
 ]
+PROBE_SOURCES = ["CMakeLists.txt", "modelDescription.xml", "modelDescription.catenary.xml", "fmu_src", "tests/native"]
 RESEARCH = "scripts/research"
-PROBE_SOURCES = [
-    "CMakeLists.txt",
-    "modelDescription.xml",
-    "resources/catenary/modelDescription.xml",
-    "fmu_src",
-    "tests/native",
-]
 
 # Prints the requirements in pyproject.toml, one a line; runs in .venv, whose pip has tomli for Python 3.10.
 READ_REQUIREMENTS = """

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 
 class ZSpringError(Exception):
     """One line that says what is wrong, its value, and what is allowed."""
+
+
+def tell(lines: Sequence[str], path: Path, most: int = 10) -> None:
+    """Lines on standard error, if there are too many the first ones and where the rest is."""
+    for line in lines[:most]:
+        print(line, file=sys.stderr)
+    if len(lines) > most:
+        print(f"and {len(lines) - most} more, see {path}", file=sys.stderr)
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

@@ -89,6 +89,12 @@ class Fmu:
                 instances.append(instance)
             yield instances
 
+    def used_parameters(self, parameters: Mapping[str, Value]) -> dict[str, Value]:
+        """Instance.used_parameters of an instance that is started with these. Raises FmuError for a refused one."""
+        with self.instances() as (instance,):
+            instance.start(parameters)
+            return instance.used_parameters()
+
     @property
     def library(self) -> Path:
         """The shared library for this platform, in the folder of FMI 2.0 or of 2.0.5.
@@ -179,6 +185,11 @@ class Instance:
                 numbers = getattr(self.slave, getter)([variable.valueReference for variable in group])
                 values.update(zip((variable.name for variable in group), numbers))
         return [values[name] for name in names]
+
+    def used_parameters(self) -> dict[str, Value]:
+        """All parameters by name as they are now, calculated ones included."""
+        names = self.variables.names("parameter", "calculatedParameter")
+        return dict(zip(names, self.get(names)))
 
     def get_slopes(self, names: Sequence[str]) -> list[float]:
         """First time derivatives of Real outputs by name, at the last communication point."""

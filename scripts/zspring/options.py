@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import importlib.resources
 import math
+import os
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
 
+from .errors import ZSpringError
 from .fmu import Fmu
 from .parameter_sets import PANTOGRAPHS, find_set, read_set
 from .variables import Value
@@ -52,6 +55,7 @@ fmu_option = click.option(
     metavar="FILE",
     help="Use this FMU instead of the one in the package.",
 )
+line_fmu_option = click.option("--line-fmu", type=click.Path(path_type=Path), metavar="FILE", help="Of the catenary.")
 set_option = click.option(
     "--set",
     "assignments",
@@ -77,6 +81,17 @@ format_option = click.option(
 )
 
 
+def jobs_option(what: str):
+    """--jobs N, by default the number of processors; `what` is done at a time."""
+    return click.option(
+        "--jobs",
+        type=click.IntRange(min=1),
+        default=lambda: os.cpu_count() or 1,
+        metavar="N",
+        help=f"{what}  [default: number of processors]",
+    )
+
+
 def output_option(default: str = "", described: str = ""):
     """--output DIR with this default; `described` says in words what one is that the settings decide."""
     return click.option(
@@ -87,6 +102,18 @@ def output_option(default: str = "", described: str = ""):
         metavar="DIR",
         help="Folder of the results." + (f"  [default: {described}]" if described else ""),
     )
+
+
+def copy_examples(folder: Path, files: Mapping[str, str]) -> None:
+    """Copy files of the package's resources, by their new names. Raises ZSpringError where one is there already."""
+    for name in files:
+        if (folder / name).exists():
+            raise ZSpringError(f"{folder / name} exists and is kept: name another folder")
+    folder.mkdir(parents=True, exist_ok=True)
+    resources = importlib.resources.files(__package__) / "resources"
+    for name, source in files.items():
+        (folder / name).write_bytes(resources.joinpath(source).read_bytes())
+    print("written:", *(folder / name for name in files))
 
 
 @contextmanager

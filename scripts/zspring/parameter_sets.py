@@ -16,6 +16,7 @@ from fmpy.model_description import ScalarVariable
 
 from .errors import ZSpringError, did_you_mean
 from .fmu import Fmu
+from .units import UnitError, conversion
 from .variables import Value, parse, text
 
 SUFFIX = ".ssv"
@@ -144,8 +145,10 @@ def _value(fmu: Fmu, variable: ScalarVariable, element: ET.Element, units: Mappi
     if not math.isfinite(value):
         raise ZSpringError(f"{variable.name} = {value}: must be finite")
     if unit not in units:
-        factor, offset = fmu.variables.factor_and_offset(variable, unit or variable.unit)
-        return (value - offset) / factor
+        try:
+            return value * conversion(unit or variable.unit or "1", variable.unit or "1")[1]
+        except UnitError as error:
+            raise ZSpringError(f"{variable.name}: {error}") from None
     own = next(_base_unit(u.baseUnit) for u in fmu.description.unitDefinitions if u.name == variable.unit)
     exponents, factor, offset = units[unit]
     if exponents != own[0]:

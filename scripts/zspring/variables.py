@@ -16,12 +16,6 @@ class Variables:
 
     def __init__(self, description: ModelDescription):
         self._by_name = {variable.name: variable for variable in description.modelVariables}
-        self._display_units = {
-            unit.name: {
-                display.name: (float(display.factor or 1), float(display.offset or 0)) for display in unit.displayUnits
-            }
-            for unit in description.unitDefinitions
-        }
 
     def __iter__(self) -> Iterator[ScalarVariable]:
         return iter(self._by_name.values())
@@ -69,16 +63,6 @@ class Variables:
             if "(synthetic)" in self[name].description and value == parse(self[name], self[name].start)
         ]
 
-    def factor_and_offset(self, variable: ScalarVariable, unit: str) -> tuple[float, float]:
-        """(factor, offset) with: value in `unit` = factor * value in the FMU's unit + offset.
-
-        Raises ZSpringError if the FMU declares neither this unit nor this display unit for the variable.
-        """
-        known = {variable.unit: (1.0, 0.0), **self._display_units.get(variable.unit, {})}
-        if unit not in known:
-            raise ZSpringError(f"{variable.name} [{unit}]: the unit must be {' or '.join(known)}")
-        return known[unit]
-
 
 def parse(variable: ScalarVariable, text: str) -> Value:
     """A value of the variable's type. Raises ZSpringError with variable, text and what is allowed."""
@@ -95,6 +79,11 @@ def parse(variable: ScalarVariable, text: str) -> Value:
         if text.lower() in (name.lower(), str(value)):
             return value
     raise ZSpringError(f"{variable.name} = {text!r}: must be one of {', '.join(items)}")
+
+
+def exact(number: float) -> str:
+    """Shortest text that reads back as the same number."""
+    return repr(float(number)).removesuffix(".0")
 
 
 def text(variable: ScalarVariable, value: Value) -> str:

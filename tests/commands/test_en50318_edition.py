@@ -97,6 +97,14 @@ def test_every_figure_can_have_a_range_and_the_example_names_them(tmp_path):
         ("[[case]]", "[case]", "case"),
         ("[agreement]", "[agrement]", "unknown key 'agrement'; did you mean agreement"),
         ("speed = 300", "speed = ", "no TOML"),
+        ("speed = 300", "speed = true", "case 1: speed = True: must be a number"),
+        ("speed = 300", "speed = inf", "case 1: speed = inf: must be a finite number"),
+        ("first_span = 5", "first_span = 5.0", "case 1: first_span = 5.0: must be a whole number"),
+        ("static_force = 120", "static_force = 0", "case 1: static_force = 0: must be a number above 0"),
+        ("static_force = 120", "static_force = 1\nsuply = 2", "case 1: unknown key 'suply'; did you mean supply"),
+        ("[110, 120]", "[110, true]", r"case 1: ranges.mean_force = \[110, True\]: must be .lowest, highest."),
+        ('title = "fast"', "title = 3", "case 1: title = 3: must be a text"),
+        ("standard_deviation = 20", "standard_deviation = nan", "agreement: standard_deviation = nan: must be a"),
     ],
 )
 def test_bad_files_are_refused_in_one_line(old, new, message, tmp_path):

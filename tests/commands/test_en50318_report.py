@@ -13,7 +13,7 @@ from zspring.en50318 import plan
 from zspring.en50318.edition import packaged_edition, read_edition
 from zspring.en50318.run import Plan, validate
 from zspring.fmu import Fmu, installed_fmu
-from zspring.tables import read_table
+from zspring.tables import read_rows
 
 BROWSER = TESTS / "browser" / "open.mjs"
 
@@ -56,7 +56,7 @@ def page(browse, folder) -> dict:
 @pytest.fixture(scope="module")
 def runs(folder) -> dict[tuple[str, str, float], dict[str, float]]:
     """Figures by group, label and speed."""
-    _, rows = read_table(folder / "runs.csv")
+    _, rows = read_rows(folder / "runs.csv")
     return {
         (row["group"], row["label"], float(row["speed [km/h]"])): {
             name.split(" ")[0]: float(value)

@@ -21,13 +21,13 @@ from zspring.identify.report import (
     phase_error,
     residual_table,
 )
-from zspring.identify.settings import Free, Search, Settings, Static
+from zspring.identify.settings import Free, Settings, Static
 
 # A straight line a + b t through five points: five residuals, two parameters.
 T = np.arange(5.0)
 LINE = np.column_stack([np.ones(5), T])
 FREQUENCY = np.array([1.0, 2.0, 4.0])
-MASSES = Free("m1", 5, 0, 10), Free("m2", 5, 0, 10)
+MASS = Free(start=5, min=0, max=10)
 MEASURED = np.array([2e-4 - 1e-4j, 1e-4 - 3e-4j, -5e-5 - 2e-4j])
 
 
@@ -47,12 +47,12 @@ class Exponential:
         return self
 
 
-def problem_of(free=MASSES, static: StaticTest | None = None, **fields) -> Problem:
-    settings = Settings(
-        path=Path("fit.toml"), model="zspring", sources=(), free=tuple(free), fixed={}, tied={}, search=Search(0)
-    )
+def problem_of(free=("m1", "m2"), static: StaticTest | None = None, **fields) -> Problem:
+    """With parameters from 0 to 10 of these names, or others by their names."""
+    free = free if isinstance(free, dict) else dict.fromkeys(free, MASS)
+    settings = Settings.model_construct(model="zspring", free=free, **fields)  # unchecked, as it has no file
     curves = [Curve("1 m/s2", FREQUENCY, np.ones(3), MEASURED)]
-    return Problem(replace(settings, **fields), Exponential(), curves, static)
+    return Problem(settings, Exponential(), curves, static)
 
 
 def fit_of(problem: Problem, **fields) -> Fit:
@@ -62,7 +62,7 @@ def fit_of(problem: Problem, **fields) -> Fit:
     return replace(
         Fit(
             x=np.full(n, 0.5),
-            values=np.array([free.value(0.5) for free in problem.settings.free]),
+            values=np.array([free.value(0.5) for free in problem.settings.free.values()]),
             answer=Answer([MEASURED], static),
             cost=0.0,
             is_converged=True,
@@ -102,7 +102,7 @@ def test_a_parameter_that_is_held_counts_as_known():
 
 def test_errors_on_a_logarithmic_scale_are_those_at_the_solution():
     """From 1 to 10^4: value = 10^(4 x), d value / dx = 4 ln(10) value."""
-    free = Free("zspring.tau", 10, 1, 1e4), Free("m2", 5, 0, 10)
+    free = {"zspring.tau": Free(start=10, min=1, max=1e4), "m2": MASS}
     error, _ = statistics(problem_of(free), np.array([0.25, 0.5]), LINE, NONE_HELD, 1.5)
     np.testing.assert_allclose(error, [4 * np.log(10) * 10 * np.sqrt(0.6), 10 * np.sqrt(0.1)], rtol=1e-12)
 
@@ -149,7 +149,8 @@ def test_a_static_test_that_is_wholly_off_weighs_as_much_as_all_points_of_the_cu
     """As the points do with residuals of 1; the zero of either load cell does not matter."""
     force = np.array([3.0, -1.0, 4.0, -6.0, 10.0])
     problem = problem_of(static=StaticTest(force, force, force))
-    problem.settings = replace(problem.settings, static=Static(Path("static.csv"), weight=weight))
+    static = Static.model_construct(path=Path("static.csv"), weight=weight)
+    problem.settings = problem.settings.model_copy(update={"static": static})
     for simulated, square in ((2 * force + 7, 1.0), (1.5 * force, 0.25), (force - 3, 0.0)):
         residuals = problem.residuals(Answer([MEASURED], simulated))
         assert residuals.size == 2 * 3 + 5 and np.all(residuals[:6] == 0)
@@ -186,7 +187,7 @@ def test_a_thinned_problem_keeps_the_ends_and_steps_of_two_milliseconds():
     frequency = np.arange(1.0, 12.0)
     curves = [Curve("1 m/s2", frequency, frequency / 10, frequency * 1e-4 * (1 - 1j)) for _ in range(2)]
     for given, used in ((5e-4, 2e-3), (3e-3, 3e-3)):
-        settings = replace(problem_of().settings, fixed={"solver.step": given, "k1": 7.0})
+        settings = problem_of(fixed={"solver.step": given, "k1": 7.0}).settings
         thinned = Problem(settings, Exponential(), curves).thinned(3)
         assert thinned.settings.fixed == {"solver.step": used, "k1": 7.0}
         for curve in thinned.curves:
@@ -239,7 +240,7 @@ def test_the_parameter_table_has_the_digits_that_the_errors_leave():
 
 
 def test_the_correlation_table_is_the_lower_triangle():
-    free = [Free(name, 5, 0, 10) for name in ("m1", "m2", "m3")]
+    free = ["m1", "m2", "m3"]
     correlation = np.array([[1, 0.12, np.nan], [0.12, 1, -0.34], [np.nan, -0.34, 1]])
     problem = problem_of(free)
     rows = [line.split() for line in correlation_table(problem, fit_of(problem, correlation=correlation))]
@@ -275,7 +276,7 @@ def test_the_residual_table_leaves_out_what_was_not_computed():
     "low, high, is_logarithmic", [(1, 10, False), (1, 10.1, True), (0, 100, False), (-1, 90, False)]
 )
 def test_wide_positive_ranges_are_searched_on_a_logarithmic_scale(low, high, is_logarithmic):
-    free = Free("m1", low, low, high)
+    free = Free(start=low, min=low, max=high)
     assert free.is_logarithmic is is_logarithmic
     middle = np.sqrt(low * high) if is_logarithmic else (low + high) / 2
     assert free.value(0.5) == pytest.approx(middle, rel=1e-12) and free.x(middle) == pytest.approx(0.5)

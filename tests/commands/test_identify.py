@@ -23,7 +23,7 @@ from zspring.identify import run
 from zspring.identify.fit import fit
 from zspring.identify.problem import Problem, ThreeMassModel, ZSpringModel
 from zspring.identify.report import doubts
-from zspring.identify.search import CostRecord, search
+from zspring.identify.search import cost_record, search
 from zspring.identify.settings import Free, Search, Settings, read_settings
 from zspring.interrupt import Interrupted
 from zspring.parameter_sets import read_set
@@ -56,14 +56,10 @@ def linear_problem(
     free: dict[str, tuple[float, float, float]], truth: dict[str, float], frequency: np.ndarray, H: np.ndarray
 ) -> Problem:
     """Logarithmic error; start, minimum and maximum of the free parameters, the others as in `truth`."""
-    settings = Settings(
-        path=Path("fit.toml"),
+    settings = Settings.model_construct(  # unchecked, as the curves come from no file
         model="linear",
-        sources=(),
-        free=tuple(Free(name, *bounds) for name, bounds in free.items()),
+        free={name: Free(start=start, min=low, max=high) for name, (start, low, high) in free.items()},
         fixed={name: value for name, value in truth.items() if name not in free},
-        tied={},
-        search=Search(0),
     )
     curves = [Curve("0.25 m/s2", frequency, np.full(frequency.shape, 0.25), H)]
     rods = {"zspring.J1": 0.0, "zspring.J2": 0.0}
@@ -155,8 +151,8 @@ def test_the_search_finds_what_least_squares_alone_miss(tmp_path):
     free = dict.fromkeys(("k1", "k2"), (2000.0, 1000.0, 40000.0))
     problem = linear_problem(free, values, frequency, H)
     assert solve(problem).cost > 1
-    record = CostRecord(tmp_path / "record.jsonl", {})
-    x = search(problem, Search(40), record, threading.Event(), lambda generation, cost: None)
+    with cost_record(tmp_path / "record.csv", {}, ["k1", "k2"]) as record:
+        x = search(problem, Search(generations=40), record, threading.Event(), lambda generation, cost: None)
     found = fit(problem, x, lambda cost: None)
     np.testing.assert_allclose(found.values, [values["k1"], values["k2"]], rtol=1e-6)
 
@@ -242,7 +238,7 @@ def test_an_interrupted_search_goes_on_to_the_same_result(measurement, tmp_path)
     text += f"[search]\ngenerations = 5\npopulation = 6\n[fixed]\nsolver.step = {STEP}\n"
     (tmp_path / "fit.toml").write_text(text)
     process = start(tmp_path, "identify", "fit.toml", "--output", "broken", "--jobs", f"{JOBS}")
-    record = tmp_path / "broken/search.partial.jsonl"
+    record = tmp_path / "broken/search.partial.csv"
     deadline = time.monotonic() + 60
     while not (record.exists() and len(record.read_text().splitlines()) > 20):
         assert process.poll() is None and time.monotonic() < deadline
@@ -250,7 +246,7 @@ def test_an_interrupted_search_goes_on_to_the_same_result(measurement, tmp_path)
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130 and "the same command goes on" in err and "Traceback" not in err
-    kept = len(record.read_text().splitlines()) - 1
+    kept = len(table(record))
     out, _ = zspring(tmp_path, "identify", "fit.toml", "--output", "broken", "--jobs", f"{JOBS}")
     assert f"going on after {kept} candidates" in out and not record.exists()
     zspring(tmp_path, "identify", "fit.toml", "--output", "whole", "--jobs", "1")
@@ -279,30 +275,26 @@ def test_ctrl_c_in_the_last_jacobian_writes_nothing_and_keeps_the_search(tmp_pat
             os.kill(os.getpid(), signal.SIGINT)
         return calls[-1]
 
-    out = tmp_path / "out"
+    path, out = tmp_path / "fit.toml", tmp_path / "out"
     with Fmu() as model:
-        settings = read_settings(tmp_path / "fit.toml", model)
+        settings = read_settings(path, model)
         with monkeypatch.context() as patched:
             patched.setattr(run, "fit", fit_until_ctrl_c)
             with pytest.raises(Interrupted, match="the same command goes on after the global search"):
-                run.identify(model, settings, out, "png", JOBS)
-        assert sorted(path.name for path in out.iterdir()) == ["identify.log", "search.partial.jsonl"]
-        run.identify(model, settings, out, "png", JOBS)
-    assert (out / "fitted.ssv").exists() and not (out / "search.partial.jsonl").exists()
+                run.identify(model, settings, path, out, "png", JOBS)
+        assert sorted(path.name for path in out.iterdir()) == ["identify.log", "search.partial.csv"]
+        run.identify(model, settings, path, out, "png", JOBS)
+    assert (out / "fitted.ssv").exists() and not (out / "search.partial.csv").exists()
 
 
 def test_a_candidate_that_cannot_be_simulated_costs_a_penalty_and_no_more(fmu):
     """Without weight and force an l0 longer than the gap between the rods leaves the spring slack."""
     frequency = np.array([3.0, 6.0])
     curves = [Curve("1 m/s2", frequency, np.ones(2), np.array([1e-4 - 1e-4j, 2e-4 - 1e-4j]))]
-    settings = Settings(
-        path=Path("fit.toml"),
+    settings = Settings.model_construct(
         model="zspring",
-        sources=(),
-        free=(Free("zspring.l0", 0.017, 0.01, 0.1),),
+        free={"zspring.l0": Free(start=0.017, min=0.01, max=0.1)},
         fixed={"gravity": 0.0, "static_force": 0.0},
-        tied={},
-        search=Search(0),
     )
     with Fmu() as model, model.instances(1) as instances:
         bench = BenchModel(instances, "up", threading.Event())

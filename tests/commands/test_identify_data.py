@@ -307,7 +307,7 @@ def test_a_bad_measurement_is_refused_with_file_line_and_column(tmp_path, text, 
 @pytest.mark.parametrize(
     "text, complaint",
     [
-        ("displacement [mm],force\n0,1\n1,2\n2,3\n", r"column 'force': unit \[\]: must be N or kN"),
+        ("displacement [mm],force\n0,1\n1,2\n2,3\n", r"column 'force' needs its unit, as in 'force \[N\]'"),
         ("displacement [mm]\n0\n1\n2\n", "no column 'force'"),
         ("displacement [mm],force [N]\n0,1\n1,x\n2,3\n", "line 3: force = 'x': must be a finite number"),
         ("displacement [mm],force [N],time [s]\n0,1,0\n1,2,1\n2,3,1\n", "line 4: time must increase"),
@@ -395,7 +395,7 @@ def test_settings_give_the_parameters_of_every_x(tmp_path):
         assert values["zspring.k"] == pytest.approx(stiffness, rel=1e-15)
         assert (values["m1"], values["friction"]) == (7.5, 2)
         assert values["zspring.J2"] == 2 * inertia
-    (free,) = settings.free
+    (free,) = settings.free.values()
     assert free.value(free.x(free.start)) == pytest.approx(free.start, rel=1e-12)
 
 
@@ -420,6 +420,21 @@ def test_settings_give_the_parameters_of_every_x(tmp_path):
         ('model = "zspring"', 'model = "zspring"\nparameters = "none.ssv"', "none.ssv: no such file"),
         ('to = "zspring.J1"', 'to = "friction"', "tied.zspring.J2: friction is no Real parameter"),
         ("[free]", "[free", "no TOML"),
+        ("start = 15000", "start = true", "free.zspring.k: start = True: must be a number"),
+        ("max = 40000", "max = inf", "free.zspring.k: max = inf: must be a finite number"),
+        ("max = 40000", "max = 40000, maximum = 1", "free.zspring.k: unknown key 'maximum'; did you mean max"),
+        ('{ to = "zspring.J1", factor = 2 }', "2", "tied.zspring.J2: to = 2: must be a text"),
+        ("factor = 2", "factor = nan", "tied.zspring.J2: factor = nan: must be a finite number"),
+        ("[[measurement]]", "[measurement]", r"measurement = {.*}: must be tables \[\[measurement\]\]"),
+        ('"bench.csv"', '"bench.csv"\namplitude = 0', "measurement 1: amplitude = 0: must be a number above 0"),
+        ('"bench.csv"', '"bench.csv"\nfixture = 1', "measurement 1: unknown key 'fixture'; did you mean fixture_mass"),
+        ("[fixed]", "[search]\ngeneration = 3\n[fixed]", "search: unknown key 'generation'; did you mean generations"),
+        ("[fixed]", "[search]\nseed = true\n[fixed]", "search: seed = True: must be a whole number"),
+        ("[fixed]", "[search]\npoints = 2.0\n[fixed]", "search: points = 2.0: must be a whole number"),
+        ("[fixed]", "[search]\npoints = 0\n[fixed]", "search: points = 0: must be a whole number of at least 1"),
+        ("[tied]", "[static]\nfile = 1\n[tied]", "static: file = 1: must be a text"),
+        ('model = "zspring"', 'model = "zspring"\nsearch = 3', "search = 3: must be a table"),
+        ('model = "zspring"', 'model = "zspring"\nband = [0, nan]', "band = .0, nan.: must be .*frequency in Hz"),
     ],
 )
 def test_bad_settings_are_refused_with_file_and_key(tmp_path, old, new, complaint):

@@ -9,7 +9,6 @@ from scipy.io import loadmat
 from commands import zspring
 from harness import PRECISE, bench_point
 from linear import PUBLISHED, LinearPantograph, ZSpringLinear, step_error
-from zspring.files import used_parameters
 from zspring.fmu import Fmu
 from zspring.linearize.modes import complex_modes, natural_frequencies
 from zspring.receptance import MODELS, LinearModel, linear_model
@@ -20,7 +19,7 @@ UNEQUAL = {"zspring.J1": 5e-4, "zspring.J2": 9e-4}  # else one rod mode, both ro
 
 def model_of(parameters, name):
     with Fmu() as fmu:
-        used = used_parameters(fmu, parameters)
+        used = fmu.used_parameters(parameters)
         reach = np.array([0.075 if dof in ("alpha", "beta") else 1.0 for dof in linear_model(used, name).names])
         return linear_model(used, name), reach
 
@@ -144,7 +143,7 @@ def test_massless_rods_and_a_massless_lower_frame_leave_the_static_condensation(
     massless = {"zspring.J1": 0.0, "zspring.J2": 0.0, "m3": 0.0, "k3": 200.0}
     model, reach = model_of(massless, "free")
     with Fmu() as fmu:
-        p = used_parameters(fmu, massless)
+        p = fmu.used_parameters(massless)
     head, base = p["zspring.k_free"], 1 / (1 / p["k2"] + 1 / p["k3"])
     chain = np.array([[head, -head], [-head, head + base]]) / np.sqrt(np.outer([p["m1"], p["m2"]], [p["m1"], p["m2"]]))
     expected = np.sqrt(np.linalg.eigvalsh(chain)) / (2 * np.pi)

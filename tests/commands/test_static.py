@@ -15,7 +15,6 @@ import pytest
 
 from commands import PNG, table, zspring
 from zspring.bench.loops import measure_loop
-from zspring.files import used_parameters
 from zspring.fmu import Fmu
 from zspring.interrupt import Interrupted
 from zspring.static import run as static_run
@@ -25,7 +24,7 @@ from zspring.static import run as static_run
 def slow():
     """The measuring function, and the parameters of the FMU with F and x of the closed form."""
     with Fmu() as fmu, fmu.instances() as (instance,):
-        p = used_parameters(fmu, {})
+        p = fmu.used_parameters({})
         ratio = np.cos(p["zspring.theta"]) ** 2 / p["zspring.d"]
         p["turn"], p["F"] = ratio, 2 * p["zspring.Mf"] * ratio
         p["x"] = p["F"] / (p["zspring.k_locked"] - p["zspring.k_free"])

@@ -36,7 +36,7 @@ from zspring.study.settings import StudySettings, read_study
 
 EXAMPLE = ROOT / "resources/examples/study.toml"
 # What a worker must do without; the modules are refused there as if they were not installed.
-NOT_NEEDED = ["zspring", "scipy", "matplotlib", "tqdm", "SALib", "pandas", "pyarrow"]
+NOT_NEEDED = ["zspring", "pydantic", "scipy", "matplotlib", "tqdm", "SALib", "pandas", "pyarrow"]
 
 SLOW = """
 design = "latin-hypercube"
@@ -379,6 +379,21 @@ def test_a_case_that_kills_workers_is_given_up_and_no_other(own_fmu):
         (("amplitudes =", "amplitude ="), ["[frf]", "amplitude", "amplitudes"]),
         (("[1, 4]", "[1000]"), ["[frf]", "stroke"]),
         (("[frf]\namplitudes = [1, 4]\nfrequencies", "[set]\n#"), ["[frf]", "[static]"]),
+        (("[vary]", "[varied]"), ["[vary]: needs at least one"]),
+        (("[frf]", "[frff]\n[frf]"), ["unknown key 'frff'; did you mean frf"]),
+        (("count = 4", "count = 4, scal = 1"), ["[vary] zspring.Mf: unknown key 'scal'; did you mean scale"]),
+        (("from = 0.1", "from = false"), ["[vary] zspring.Mf.from = False: must be a number"]),
+        (("to = 0.4", "to = inf"), ["[vary] zspring.Mf.to = inf: must be a finite number"]),
+        (("count = 4", "count = 1000000000000"), ["[vary] zspring.Mf.count", "at most 1000000"]),
+        (("count = 4", "count = 1"), ["[vary] zspring.Mf.count = 1: must be a whole number of at least 2"]),
+        (("[12500, 13500]", "12500"), ["[vary] zspring.k = 12500: needs a range", "or a list"]),
+        (("[12500, 13500]", "[true]"), ["[vary] zspring.k = 'True': must be a number"]),
+        (("13500]", "nan]"), ["[vary] zspring.k = nan N/m: must be finite"]),
+        (("[1, 4]", "[1, true]"), ["[frf] amplitudes = [1, True]: must be positive numbers"]),
+        (("[1, 4]", "[1, 4]\nstroke = inf"), ["[frf] stroke = inf: must be a finite number"]),
+        (("[1, 4]", "[1, 4]\nmin_periods = 2.5"), ["[frf] min_periods = 2.5: must be a whole number"]),
+        (("[1, 4]", '[1, 4]\ndirection = "left"'), ['[frf] direction = \'left\': must be "up", "down" or "rest"']),
+        (("[frf]", "[static]\nrate = 1\n[frf]"), ["[static] amplitudes is missing"]),
     ],
 )
 def test_a_bad_study_is_refused_with_one_clear_line(own_fmu, tmp_path, change, named):

@@ -14,8 +14,8 @@ from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
 from zspring.study.design import make_cases
 from zspring.study.evaluations import FrfQuantity, StaticQuantity, column
+from zspring.study.files import StudyRecord
 from zspring.study.plot import envelope_figure
-from zspring.study.record import StudyRecord
 from zspring.study.report import (
     PERCENTILES,
     Envelope,
@@ -30,7 +30,8 @@ from zspring.study.report import (
 )
 from zspring.study.settings import Range, StudySettings
 
-TWO = StudySettings("sobol", 8, 1, {"m1": Range(1, 2), "m2": Range(1, 2)}, {}, (StaticQuantity((0.01,)),))
+RANGE = Range.model_validate({"from": 1, "to": 2})
+TWO = StudySettings("sobol", 8, 1, {"m1": RANGE, "m2": RANGE}, {}, (StaticQuantity((0.01,)),))
 BLOCK = 4  # cases of two parameters
 
 
@@ -196,7 +197,8 @@ def test_lost_cases_are_run_again_and_failed_ones_are_not(tmp_path):
     assert record.missing == [0, 1, 2, 3, 4]
     with record:
         for number, status in ((3, "lost"), (1, "ok"), (0, "failed: so\n and so")):
-            record.append(number, {"status": status, "seconds": 0.5, "y": 2.5 if status == "ok" else float("nan")})
+            y = 2.5 if status == "ok" else float("nan")
+            record.append(record.row(number, {"status": status, "seconds": 0.5, "y": y}))
     assert record.missing == [2, 3, 4]
     assert record.failed == [(0, "failed: so and so"), (3, "lost")]
     with path.open("a") as file:
@@ -205,7 +207,7 @@ def test_lost_cases_are_run_again_and_failed_ones_are_not(tmp_path):
     assert again.missing == [2, 3, 4] and again.rows[1]["y"] == "2.5" and again.rows[0]["y"] == ""
     again.finish()
     assert [row["case"] for row in table(path)] == ["0", "1", "3"]
-    with pytest.raises(ZSpringError, match=r"is of another study \(design: list, now grid"):
+    with pytest.raises(ZSpringError, match=r"is of other settings \(design: list, now grid"):
         StudyRecord(path, {"date": "later", "design": "grid"}, cases, ["y"])
 
 

@@ -19,7 +19,7 @@ from harness import Fmu, Value, refusal
 from models import each_case
 from paths import ROOT
 
-SOURCES = {"ZSpringPantograph": "modelDescription.xml", "Catenary": "resources/catenary/modelDescription.xml"}
+SOURCES = {"ZSpringPantograph": "modelDescription.xml", "Catenary": "modelDescription.catenary.xml"}
 
 
 def xml(fmu: Fmu) -> ElementTree.Element:

@@ -24,9 +24,8 @@ int main(int argc, char** argv) {
     p.bench_frequency = frequency;
     p.bench_acceleration = acceleration;
     Simulation simulation(p, Inputs());
-    AdvanceFailure failure;
-    if (!simulation.advance(p, Inputs(), std::atof(argv[2]) / frequency, failure)) return 1;
-    steps += simulation.outputs().steps;
+    if (simulation.advance(Inputs(), std::atof(argv[2]) / frequency)) return 1;
+    steps += static_cast<double>(simulation.statistics().steps);
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
   std::printf("%.0f %.6f\n", steps, seconds);

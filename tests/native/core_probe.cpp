@@ -1,5 +1,6 @@
 // The core's elements as C functions, for tests that compare them with differences and closed forms (ctypes).
-#include "pantograph/friction.hpp"
+#include "common/failure.hpp"
+#include "pantograph/resolvent.hpp"
 #include "pantograph/zspring.hpp"
 
 using namespace zspring;
@@ -11,12 +12,12 @@ extern "C" {
 // spring has no direction.
 int probe_zspring(const double parameters[5], const double coordinates[3], double out[21]) {
   const ZSpringParameters z{parameters[0], parameters[1], parameters[2], parameters[3], parameters[4], 0, 0, 0, 1};
-  ElementResponse r;
-  if (!zspring_response(z, coordinates[0], coordinates[1], coordinates[2], r)) return 0;
-  *out++ = r.energy;
-  for (int i = 0; i < 4; ++i) *out++ = r.force[i];
+  const std::optional<ElementResponse> r = zspring_response(z, coordinates[0], coordinates[1], coordinates[2]);
+  if (!r) return 0;
+  *out++ = r->energy;
+  for (int i = 0; i < 4; ++i) *out++ = r->force[i];
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) *out++ = r.tangent(i, j);
+    for (int j = 0; j < 4; ++j) *out++ = r->tangent(i, j);
   return 1;
 }
 
@@ -37,7 +38,7 @@ int probe_static_state(const double parameters[5], double load, double out[6]) {
     const double values[] = {s.theta, s.gap, s.length, s.tension, s.k_locked, s.k_free};
     for (int i = 0; i < 6; ++i) out[i] = values[i];
     return 1;
-  } catch (const ParameterError&) {
+  } catch (const Refusal&) {
     return 0;
   }
 }

@@ -9,17 +9,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from zspring_research.integrators.record import Record
 
 import zspring.fmu
 from harness import fitted_order
 from reference import ALPHA, BETA, U1, Reference
-from zspring.tables import read_table
+from zspring.tables import read_rows
 from zspring_research.integrators.command import integrators
 from zspring_research.integrators.measure import STABILITY, Laboratory, Result, Variant, from_row, to_row
 from zspring_research.integrators.model import UPPER_FRAME, bench_model, contact_force, dynamics, head_motion
 from zspring_research.integrators.peers import ADAPTIVE, rk4, solve
 from zspring_research.integrators.problem import Problem
-from zspring_research.integrators.record import Record
 from zspring_research.integrators.report import cheapest
 from zspring_research.integrators.run import _measure
 
@@ -208,7 +208,7 @@ def test_quick_study_writes_its_files(tmp_path):
     done = CliRunner().invoke(integrators, arguments, catch_exceptions=False)
     assert done.exit_code == 0, done.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["inertia.png", "integrators.csv", "precision.png"]
-    head, rows = read_table(tmp_path / "integrators.csv")
+    head, rows = read_rows(tmp_path / "integrators.csv")
     assert head["bench"].startswith("5.0 Hz, 1.0 m/s2") and head["zspring.tau"] == "1000 s"
     results = dict(from_row(row) for row in rows)
     assert {variant.method for variant in results} == {"HHT", "RK4", "RK45", "LSODA", "Radau", "CVODE"}

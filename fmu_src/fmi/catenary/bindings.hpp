@@ -1,11 +1,11 @@
-// The overhead line as the FMI layer sees it: each variable of its model description and what it stands for.
+// The overhead line as the FMI layer sees it: each variable of its model description, but the outputs, and what it
+// stands for.
 #pragma once
 
 #include "catenary/simulation.hpp"
 
 namespace zspring::fmi {
 using catenary::Inputs;
-using catenary::Outputs;
 using catenary::Parameters;
 using catenary::Simulation;
 using Calculated = catenary::LineFacts;
@@ -51,24 +51,5 @@ CALCULATED(dropper_dot_static_force_min, dropper_force_min)
 INPUT(pantograph_dot_force, pantograph[i].force)
 INPUT(pantograph_dot_speed, pantograph[i].speed)
 INPUT(pantograph_dot_position, pantograph[i].position)
-
-OUTPUT(pantograph_dot_x, position[i])
-OUTPUT(pantograph_dot_wire_height, contact[i].height)
-OUTPUT(pantograph_dot_wire_velocity, contact[i].velocity)
-OUTPUT(pantograph_dot_uplift, contact[i].uplift)
-OUTPUT(support_dot_uplift, support_uplift[i])
-OUTPUT(point_dot_height, point[i].height)
-OUTPUT(point_dot_uplift, point[i].uplift)
-OUTPUT(point_dot_velocity, point[i].velocity)
-OUTPUT(droppers_dot_slack, slack)
-OUTPUT(droppers_dot_force_min, dropper_force_min)
-OUTPUT(droppers_dot_force_max, dropper_force_max)
-OUTPUT(energy_dot_kinetic, kinetic)
-OUTPUT(energy_dot_elastic, elastic)
-OUTPUT(energy_dot_dissipated, dissipated)
-OUTPUT(energy_dot_work, work)
-OUTPUT(solver_dot_steps, steps)
-OUTPUT(solver_dot_iterations, iterations)
-OUTPUT(solver_dot_iterations_max, iterations_max)
 
 }  // namespace zspring::fmi

@@ -1,4 +1,5 @@
-// The pantograph as the FMI layer sees it: each variable of its model description and what it stands for.
+// The pantograph as the FMI layer sees it: each variable of its model description, but the outputs, and what it
+// stands for.
 #pragma once
 
 #include "pantograph/simulation.hpp"
@@ -54,33 +55,5 @@ INPUT(wire_height, wire_height)
 INPUT(uplift_dot_head, uplift[0])
 INPUT(uplift_dot_upper_frame, uplift[1])
 INPUT(uplift_dot_lower_frame, uplift[2])
-
-OUTPUT(head_dot_z, head_z)
-OUTPUT(head_dot_v, head_v)
-OUTPUT(head_dot_a, head_a)
-OUTPUT(upper_frame_dot_z, upper_frame_z)
-OUTPUT(upper_frame_dot_v, upper_frame_v)
-OUTPUT(lower_frame_dot_z, lower_frame_z)
-OUTPUT(lower_frame_dot_v, lower_frame_v)
-OUTPUT(contact_dot_force, contact_force)
-OUTPUT(contact_dot_closed, contact_closed)
-OUTPUT(zspring_dot_alpha, alpha)
-OUTPUT(zspring_dot_beta, beta)
-OUTPUT(zspring_dot_length, spring_length)
-OUTPUT(zspring_dot_force, spring_force)
-OUTPUT(zspring_dot_moment_alpha, moment_alpha)
-OUTPUT(zspring_dot_moment_beta, moment_beta)
-OUTPUT(energy_dot_kinetic, kinetic)
-OUTPUT(energy_dot_elastic, elastic)
-OUTPUT(energy_dot_dissipated, dissipated)
-OUTPUT(energy_dot_work, work)
-OUTPUT(solver_dot_iterations, iterations)
-OUTPUT(solver_dot_iterations_max, iterations_max)
-OUTPUT(solver_dot_steps, steps)
-OUTPUT(solver_dot_refinements, refinements)
-OUTPUT(bench_dot_H_re, H_re)
-OUTPUT(bench_dot_H_im, H_im)
-OUTPUT(bench_dot_change, H_change)
-OUTPUT(bench_dot_periods, periods)
 
 }  // namespace zspring::fmi

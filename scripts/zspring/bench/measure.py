@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..fmu import Fmu, StepDiscarded
-from ..variables import Value
+from ..variables import Value, exact
 from .fmu_bench import FmuBench
 from .input_bench import InputBench
 
@@ -40,6 +40,19 @@ class FrfSettings:
     min_periods: int = 8
     max_periods: int = 400
     stroke: float = 0.1  # m, largest displacement peak
+
+    def described(self) -> dict[str, str]:
+        """All but the parameters as text, by key."""
+        return {
+            "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
+            "through": self.through,
+            "direction": self.direction,
+            "amplitudes": " ".join(map(exact, self.amplitudes)) + " m/s2",
+            "frequencies": " ".join(map(exact, self.frequencies)) + " Hz",
+            "tolerance": exact(self.tolerance),
+            "periods": f"{self.min_periods} to {self.max_periods}",
+            "stroke": f"{exact(self.stroke)} m",
+        }
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,12 @@
 """Measured frequency responses from files: one curve for each amplitude.
 
-A CSV file has a line of column names with units, in any order, and may begin with lines of comment (#):
+The file is a table as `tables.py` reads it, with the columns, in any order:
 
     frequency [Hz]      increasing within each amplitude
     amplitude [UNIT]    peak of the imposed sine; the unit tells whether displacement, velocity or
                         acceleration; may be missing where the settings give it
     real [UNIT], imaginary [UNIT], or magnitude [UNIT], phase [deg or rad]
-                        the unit tells the kind of response, see `quantities`
+                        the unit tells the kind of response, see `responses`
 
 Other columns are not read. The file that `zspring frf` writes has this form (its H_re and H_im are read);
 points that it marks as left out or failed are passed over.
@@ -21,10 +21,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ZSpringError
-from ..tables import finite_number, read_rows, split_label
+from ..tables import read_table
+from ..units import UnitError
 from .responses import acceleration_of, response_of
 
-ALIASES = {"H_re": "real", "H_im": "imaginary"}
+ALIASES = {"h re": "real", "h im": "imaginary", "imag": "imaginary"}
 
 
 @dataclass(frozen=True)
@@ -78,63 +79,37 @@ def read_csv(path: Path, amplitude: float | None) -> list[Curve]:
     Raises ZSpringError with file, line and column for a missing column or unit, a value that is no finite
     number or not positive where it must be, and frequencies that do not increase.
     """
-    labels, rows = read_rows(path)
-    columns: dict[str, tuple[int, str | None]] = {}
-    for index, label in enumerate(labels):
-        name, unit = split_label(label)
-        name = ALIASES.get(name, name)
-        if name in columns:
-            raise ZSpringError(f"{path}: two columns {name!r}")
-        columns[name] = (index, unit)
-    if "status" in columns:
-        status = columns["status"][0]
-        rows = [row for row in rows if not row[1][status].startswith(("left out", "failed"))]
-    if not rows:
+    table = read_table(path, ALIASES)
+    if "status" in table:
+        table = table.where(not cell.startswith(("left out", "failed")) for cell in table["status"].cells)
+    if not table.lines:
         raise ZSpringError(f"{path}: no row with a measured point")
-
-    def column(name: str, positive: bool = False) -> np.ndarray:
-        if name not in columns:
-            raise ZSpringError(f"{path}: no column {name!r}")
-        index, _ = columns[name]
-        numbers = [finite_number(path, line, name, row[index]) for line, row in rows]
-        for (line, _), number in zip(rows, numbers):
-            if positive and number <= 0:
-                raise ZSpringError(f"{path}, line {line}: {name} = {number:g}: must be positive")
-        return np.array(numbers)
-
-    def unit(name: str, *allowed: str) -> str | None:
-        unit = columns[name][1]
-        if unit is None:
-            raise ZSpringError(f"{path}: column {name!r} needs its unit, as in '{name} [UNIT]'")
-        if allowed and unit not in allowed:
-            raise ZSpringError(f"{path}, column {name!r}: unit [{unit}]: must be {' or '.join(allowed)}")
-        return unit
-
-    frequency = column("frequency", positive=True)
-    unit("frequency", "Hz")
-    if "real" in columns or "imaginary" in columns:
-        value, kind = column("real") + 1j * column("imaginary"), "real"
-        unit("imaginary", unit("real") or "")
+    frequency = table.numbers("frequency", "Hz", positive=True)
+    if "real" in table or "imaginary" in table:
+        kind = "real"
+        value = table.numbers("real") + 1j * table.numbers("imaginary")
+        real, imaginary = table.unit("real"), table.unit("imaginary")
+        if real != imaginary:
+            raise ZSpringError(f"{path}, column 'imaginary': unit [{imaginary}]: must be {real}")
     else:
-        kind, phase = "magnitude", column("phase")
-        radians = np.radians(phase) if unit("phase", "deg", "rad") == "deg" else phase
-        value = column("magnitude", positive=True) * np.exp(1j * radians)
-    for (line, _), number in zip(rows, value):
+        kind, phase = "magnitude", table.numbers("phase", "rad")
+        value = table.numbers("magnitude", positive=True) * np.exp(1j * phase)
+    for line, number in zip(table.lines, value):
         if number == 0:
             raise ZSpringError(f"{path}, line {line}: the response is 0")
-    if "amplitude" in columns:
-        steps, step_unit = column("amplitude", positive=True), unit("amplitude")
+    if "amplitude" in table:
+        steps, step_unit = table.numbers("amplitude", positive=True), table.unit("amplitude")
     elif amplitude:
         steps, step_unit = np.full(frequency.shape, amplitude), "m/s2"
     else:
         raise ZSpringError(f"{path}: no column 'amplitude', and none given for the file in the settings")
     try:
-        H = response_of(unit(kind)).receptance(frequency, value)
-    except ZSpringError as error:
+        H = response_of(table.unit(kind)).receptance(frequency, value)
+    except UnitError as error:
         raise ZSpringError(f"{path}, column {kind!r}: {error}") from None
     try:
         acceleration = acceleration_of(step_unit, frequency, steps)
-    except ZSpringError as error:
+    except UnitError as error:
         raise ZSpringError(f"{path}, column 'amplitude': {error}") from None
 
     curves = []
@@ -144,7 +119,7 @@ def read_csv(path: Path, amplitude: float | None) -> list[Curve]:
         if late.size:
             before, after = points[late[0]], points[late[0] + 1]
             raise ZSpringError(
-                f"{path}, line {rows[after][0]}: frequency = {frequency[after]:g} Hz after "
+                f"{path}, line {table.lines[after]}: frequency = {frequency[after]:g} Hz after "
                 f"{frequency[before]:g} Hz: must increase within one amplitude"
             )
         curves.append(Curve(f"{step:g} {step_unit}", frequency[points], acceleration[points], H[points]))

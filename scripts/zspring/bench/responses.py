@@ -11,11 +11,11 @@ s = i omega and v the measured value, exp(i omega t):
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import ZSpringError
+from ..units import conversion
 
 
 @dataclass(frozen=True)
@@ -34,44 +34,28 @@ class Response:
         return (1 / value if self.inverse else value) / s**self.derivatives
 
 
-def _units(name: str, derivatives: int, inverse: bool, units: dict[str, float]) -> dict[str, Response]:
-    return {unit: Response(name, derivatives, inverse, factor) for unit, factor in units.items()}
-
-
 # The unit tells the kind.
-RESPONSES: dict[str, Response] = {
-    **_units("receptance", 0, False, {"m/N": 1.0, "mm/N": 1e-3, "um/N": 1e-6}),
-    **_units("dynamic stiffness", 0, True, {"N/m": 1.0, "kN/m": 1e3, "N/mm": 1e3}),
-    **_units("mobility", 1, False, {"m/(N.s)": 1.0, "(m/s)/N": 1.0, "(mm/s)/N": 1e-3}),
-    **_units("mechanical impedance", 1, True, {"N.s/m": 1.0, "N/(m/s)": 1.0}),
-    **_units("accelerance", 2, False, {"(m/s2)/N": 1.0, "1/kg": 1.0}),
-    **_units("apparent mass", 2, True, {"kg": 1.0, "N/(m/s2)": 1.0}),
+RESPONSES = {
+    "m/N": Response("receptance", 0, False),
+    "N/m": Response("dynamic stiffness", 0, True),
+    "m/(N.s)": Response("mobility", 1, False),
+    "N.s/m": Response("mechanical impedance", 1, True),
+    "1/kg": Response("accelerance", 2, False),
+    "kg": Response("apparent mass", 2, True),
 }
-
-# Peak of the imposed sine: derivatives of the displacement, factor to SI.
-AMPLITUDES: dict[str, tuple[int, float]] = {
-    "m/s2": (2, 1.0),
-    "mm/s2": (2, 1e-3),
-    "m/s": (1, 1.0),
-    "mm/s": (1, 1e-3),
-    "m": (0, 1.0),
-    "mm": (0, 1e-3),
-}
+AMPLITUDES = {"m/s2": 2, "m/s": 1, "m": 0}  # peak of the imposed sine: derivatives of the displacement
 
 
-def response_of(unit: str | None) -> Response:
-    """The kind of response with this unit. Raises ZSpringError for none."""
-    if unit not in RESPONSES:
-        raise ZSpringError(f"unit [{unit or ''}]: must be one of {', '.join(RESPONSES)}")
-    return RESPONSES[unit]
+def response_of(unit: str) -> Response:
+    """The kind of response with this unit. Raises UnitError for none."""
+    kind, factor = conversion(unit, *RESPONSES)
+    return replace(RESPONSES[kind], factor=factor)
 
 
-def acceleration_of(unit: str | None, frequency: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-    """Peak acceleration in m/s2 from a peak displacement, velocity or acceleration in `unit`."""
-    if unit not in AMPLITUDES:
-        raise ZSpringError(f"unit [{unit or ''}]: must be one of {', '.join(AMPLITUDES)}")
-    derivatives, factor = AMPLITUDES[unit]
-    return factor * amplitude * (2 * np.pi * frequency) ** (2 - derivatives)
+def acceleration_of(unit: str, frequency: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+    """Peak acceleration in m/s2 from a peak displacement, velocity or acceleration in `unit`; UnitError for others."""
+    kind, factor = conversion(unit, *AMPLITUDES)
+    return factor * amplitude * (2 * np.pi * frequency) ** (2 - AMPLITUDES[kind])
 
 
 QUANTITIES = {"receptance": "m/N", "stiffness": "N/m"}  # in which an FRF is shown

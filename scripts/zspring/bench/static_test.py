@@ -1,9 +1,9 @@
 """Static test of the head suspension: force against displacement with the frame blocked.
 
-A CSV file with the columns
+A table as `tables.py` reads it, with the columns
 
-    displacement [m or mm]  of the head against the blocked frame, upward, from the static state
-    force [N or kN]         on the head, positive upward as the displacement (a load cell in compression under
+    displacement [m]        of the head against the blocked frame, upward, from the static state
+    force [N]               on the head, positive upward as the displacement (a load cell in compression under
                             the contact strip counts negative)
     time [s]                may be missing: then the head moves with the speed of the settings
 
@@ -21,10 +21,9 @@ import numpy as np
 
 from ..errors import ZSpringError
 from ..fmu import Instance
-from ..tables import finite_number, read_rows, split_label
+from ..tables import read_table
 from ..variables import Value
 
-UNITS = {"displacement": {"m": 1.0, "mm": 1e-3}, "force": {"N": 1.0, "kN": 1e3}, "time": {"s": 1.0}}
 BLOCKED_FRAME = {"k2": 1e9, "k3": 1e9}  # N/m, so stiff that the frame moves less than a micrometre
 # From point to point. The FMU rounds a turn of the head over a few communication steps, so that the inertia
 # in it is over when the next point is reached.
@@ -59,27 +58,16 @@ def read_static_test(path: Path, speed: float) -> StaticTest:
     Raises ZSpringError, with file, line and column, for missing columns or units, values that are not finite
     and time that does not increase.
     """
-    labels, rows = read_rows(path)
-    columns = {}
-    for index, (name, unit) in enumerate(map(split_label, labels)):
-        if name in UNITS:
-            if unit not in UNITS[name]:
-                units = " or ".join(UNITS[name])
-                raise ZSpringError(f"{path}, column {name!r}: unit [{unit or ''}]: must be {units}")
-            numbers = [finite_number(path, line, name, row[index]) for line, row in rows]
-            columns[name] = UNITS[name][unit] * np.array(numbers)
-    for name in ("displacement", "force"):
-        if name not in columns:
-            raise ZSpringError(f"{path}: no column {name!r}")
-    displacement = columns["displacement"]
+    table = read_table(path)
+    displacement, force = table.numbers("displacement", "m"), table.numbers("force", "N")
     if displacement.size < 3:
         raise ZSpringError(f"{path}: needs at least three rows")
     distance = np.abs(np.diff(displacement, prepend=0.0))
     duration = np.maximum(distance / speed, 1e-3)
-    if "time" in columns:
-        steps = np.diff(columns["time"])
+    if "time" in table:
+        steps = np.diff(table.numbers("time", "s"))
         if np.any(steps <= 0):
-            line = rows[int(np.argmax(steps <= 0)) + 1][0]
+            line = table.lines[int(np.argmax(steps <= 0)) + 1]
             raise ZSpringError(f"{path}, line {line}: time must increase")
         duration[1:] = steps
-    return StaticTest(displacement, columns["force"], duration)
+    return StaticTest(displacement, force, duration)

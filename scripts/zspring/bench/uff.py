@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ZSpringError, missing_extra
+from ..units import UnitError, conversion, offered
 from .measured import Curve
 from .responses import Response
 
@@ -15,21 +16,7 @@ MOTIONS = {8: 0, 11: 1, 12: 2}  # specific data type: derivatives of the displac
 FORCES = (9, 13)  # reaction force, excitation force
 ACCELERATION = 12
 
-# Unit labels in use, to SI.
-LABELS = {
-    "m": 1.0,
-    "mm": 1e-3,
-    "um": 1e-6,
-    "m/s": 1.0,
-    "mm/s": 1e-3,
-    "m/s2": 1.0,
-    "m/s^2": 1.0,
-    "mm/s2": 1e-3,
-    "mm/s^2": 1e-3,
-    "g": 9.80665,
-    "N": 1.0,
-    "kN": 1e3,
-}
+SI = ("m", "m/s", "m/s2")  # of a motion, by derivatives of the displacement
 
 
 def read_uff(path: Path, amplitude: float | None) -> list[Curve]:
@@ -102,8 +89,11 @@ def _curve(data: dict, factors: dict | None, amplitude: float | None) -> Curve:
 def _factor(data: dict, axis: str, kind: int, factors: dict | None) -> float:
     """From the unit of numerator or denominator to SI: by its label, else by data set 164."""
     label = str(data.get(f"{axis}_axis_units_lab") or "").strip()
-    if label in LABELS:
-        return LABELS[label]
-    if factors is None or label.upper() not in ("", "NONE"):
-        raise ZSpringError(f"unit {label!r}: must be one of {', '.join(LABELS)}, or come from a data set 164")
-    return 1 / float(factors["force" if kind in FORCES else "length"])
+    unit = "N" if kind in FORCES else SI[MOTIONS[kind]]
+    if label.upper() in ("", "NONE") and factors is not None:
+        return 1 / float(factors["force" if kind in FORCES else "length"])
+    try:
+        return conversion(label, unit)[1]
+    except UnitError:
+        known = ", ".join(offered(unit))
+        raise ZSpringError(f"unit {label!r}: must be one of {known}, or come from a data set 164") from None

@@ -12,8 +12,17 @@ from ..line.journey import MASSES, START_UPS, Journey, parameter_value
 from ..line.mean_force import STANDING, mean_force
 from ..line.schemes import DRIVES, SCHEMES, Coupling
 from ..line.system import System
-from ..options import chosen_parameters, format_option, opened, output_option, parameters_option, set_option
+from ..options import (
+    chosen_parameters,
+    format_option,
+    line_fmu_option,
+    opened,
+    output_option,
+    parameters_option,
+    set_option,
+)
 from ..parameter_sets import LINES
+from ..records import claimed
 
 SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameters of the catenary
 
@@ -104,7 +113,7 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
 @output_option("results/couple")
 @format_option
 @click.option("--fmu", "fmu_path", type=click.Path(path_type=Path), metavar="FILE", help="Of the pantograph.")
-@click.option("--line-fmu", type=click.Path(path_type=Path), metavar="FILE", help="Of the catenary.")
+@line_fmu_option
 def couple(
     speed,
     line_set,
@@ -156,7 +165,9 @@ def couple(
         system = System(catenary, pantograph, line, [parameters] * count, journey, coupling)
         if ssp_path:
             run.export_ssp(system, ssp_path)
-        elif compare_steps:
-            run.compare_and_write(system, output, suffix)
-        else:
-            run.run_and_write(system, output, suffix, parquet)
+            return
+        with claimed(output):
+            if compare_steps:
+                run.compare_and_write(system, output, suffix)
+            else:
+                run.run_and_write(system, output, suffix, parquet)

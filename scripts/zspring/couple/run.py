@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import astuple, replace
 from pathlib import Path
 
 from tqdm import tqdm
 
 from ..errors import ZSpringError
 from ..figures import save
+from ..heads import synthetic_note
 from ..interrupt import Interrupted
 from ..line.result import LineResult, write_result
 from ..line.run import LineRun
 from ..line.schemes import Coupling
 from ..line.statistics import low_pass
 from ..line.system import System
-from ..tables import write_head
-from ..variables import Value, parse
+from ..tables import write_table
+from ..variables import Value
 from .compare import STEPS, compare_steps, compared, comparison_table
 from .plot import comparison_figure, line_figure
 from .report import summary
@@ -91,12 +91,9 @@ def compare_and_write(system: System, folder: Path, suffix: str) -> None:
     paths = folder / "steps.csv", folder / f"steps.{suffix}"
     if not rows:
         raise stopped
-    folder.mkdir(parents=True, exist_ok=True)
-    with open(paths[0], "w", encoding="utf-8", newline="") as file:
-        head = {**system.catenary.identity, "speed": speed, "drive": system.coupling.drive}
-        columns = ["scheme", "step [s]", "rms [N]", "largest [N]", "mean [N]", "deviation [N]", "elapsed [s]"]
-        write_head(file, head, columns)
-        csv.writer(file, lineterminator="\n").writerows(asdict(row).values() for row in rows)
+    head = {**system.catenary.identity, "speed": speed, "drive": system.coupling.drive}
+    columns = ["scheme", "step [s]", "rms [N]", "largest [N]", "mean [N]", "deviation [N]", "elapsed [s]"]
+    write_table(paths[0], head, columns, map(astuple, rows), digits=None)
     print(*comparison_table(rows), sep="\n")
     if stopped:
         raise type(stopped)(f"{stopped}; the rows so far are kept in {paths[0]}")
@@ -116,7 +113,5 @@ def _title(result: LineResult, system: System) -> str:
     title = f"{settings['speed']}, {settings['coupling']} coupling, step {settings['step']}"
     names = variables.names("parameter")
     sets = [dict(zip(names, values)) for values in zip(*(system.of_each(name) for name in names))]
-    has_zspring = any(s["suspension"] == parse(variables["suspension"], "ZSpring") for s in sets)
-    if has_zspring and any(variables.synthetic(s) for s in sets):
-        title += "; Z-spring parameters synthetic"
-    return title
+    notes = {synthetic_note(system.pantograph, used) for used in sets}
+    return title + max(notes, key=len)

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-import importlib.resources
-import os
 import re
-import shutil
 from pathlib import Path
 
 import click
 
-from ..errors import ZSpringError
-from ..fmu import installed_fmu
-from ..options import Numbers, chosen_parameters, fmu_option, opened, output_option, parameters_option, set_option
+from ..fmu import CATENARY, installed_fmu
+from ..options import (
+    Numbers,
+    chosen_parameters,
+    copy_examples,
+    fmu_option,
+    jobs_option,
+    line_fmu_option,
+    opened,
+    output_option,
+    parameters_option,
+    set_option,
+)
+from ..records import claimed
 
 FILE = click.Path(path_type=Path, dir_okay=False)
 POSITIVE = click.FloatRange(min=0, min_open=True)
 EDITIONS = ("en-50318-2002", "benchmark-2015")
-EXAMPLE = "example.toml"
 
 
 class Spans(click.ParamType):
@@ -57,9 +64,7 @@ class Spans(click.ParamType):
     metavar="LIST",
     help="Speeds in km/h at which the heads are compared.  [default: 200:350:25]",
 )
-@click.option(
-    "--jobs", type=click.IntRange(min=1), metavar="N", help="Runs at a time.  [default: number of processors]"
-)
+@jobs_option("Runs at a time.")
 @click.option("--series", type=FILE, metavar="FILE.csv", help="Instead of our runs: a contact force to evaluate.")
 @click.option("--line-test", type=FILE, metavar="FILE.csv", help="A measured contact force, to compare --series with.")
 @click.option("--case", "case_title", metavar="TITLE", help="Compare --series with the ranges of this case.")
@@ -118,7 +123,7 @@ class Spans(click.ParamType):
 @set_option
 @output_option("results/en50318")
 @fmu_option
-@click.option("--line-fmu", type=click.Path(path_type=Path), metavar="FILE", help="Of the catenary.")
+@line_fmu_option
 def en50318(
     edition_path,
     example,
@@ -157,7 +162,7 @@ def en50318(
     Writes report.html, which needs no other file, and raw CSV and PNG files beside it.
     """
     if example:
-        _write_example(example)
+        copy_examples(example, {"edition.toml": "en50318/example.toml"})
         return
     own = series or line_test or frf
     for name, given in ("--parameters", parameter_set), ("--set", assignments):
@@ -170,8 +175,7 @@ def en50318(
 
     paths = [edition_path] if edition_path else [packaged_edition(name) for name in EDITIONS]
     editions = [read_edition(path) for path in paths]
-    jobs = jobs or os.cpu_count() or 1
-    with opened(fmu_path) as fmu, opened(line_fmu or installed_fmu("Catenary")) as catenary:
+    with opened(fmu_path) as fmu, opened(line_fmu or installed_fmu(CATENARY)) as catenary, claimed(output):
         if not own:
             from .plan import HEAD_SPEEDS
             from .run import Plan, validate
@@ -191,13 +195,3 @@ def en50318(
             series, line_test, editions[0], case_title, speed and speed / 3.6, spans, span, first_support, pantograph
         )
         report_on(data, source, parameters, frf_bands, direction, fmu, catenary, output, jobs)
-
-
-def _write_example(folder: Path) -> None:
-    """Copy the empty edition. Raises ZSpringError where one would be overwritten."""
-    path = folder / "edition.toml"
-    if path.exists():
-        raise ZSpringError(f"{path} exists and is kept: name another folder")
-    folder.mkdir(parents=True, exist_ok=True)
-    shutil.copy(Path(str(importlib.resources.files("zspring") / "resources" / "en50318" / EXAMPLE)), path)
-    print("written:", path)

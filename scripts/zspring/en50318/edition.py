@@ -7,47 +7,90 @@ EN 50318:2002 and the benchmark of 2015 come with the package. Later editions ar
 from __future__ import annotations
 
 import importlib.resources
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, model_validator
 
 from ..errors import ZSpringError, did_you_mean
 from ..line.mean_force import STANDING, mean_force
 from ..line.statistics import FIGURES, Statistics
-from ..parameter_sets import LINES, PANTOGRAPHS, find_set, packaged_sets
-from ..toml_tables import Table, is_number, read_toml
+from ..parameter_sets import LINES, PANTOGRAPHS, find_set
+from ..settings import Pair, Positive, Table, fitting, set_name, settings_of
 
 DEVIATION_SHARE = 0.3  # of the mean force: largest standard deviation, as papers quote it
 MOST_SPEED = 600.0  # km/h
 
-Range = tuple[float, float]
+
+def _known(figures: Any) -> Any:
+    for name in figures if isinstance(figures, Mapping) else ():
+        if name not in FIGURES:
+            raise ValueError(f"unknown figure {name!r}{did_you_mean(name, FIGURES)}")
+    return figures
 
 
-@dataclass(frozen=True)
-class Case:
+Range = Annotated[Pair, fitting("must be [lowest, highest]", lambda ends: ends[0] <= ends[1])]
+Supply = Annotated[str, fitting(f"must be one of {', '.join(STANDING)}", ("", *STANDING).__contains__)]
+
+
+class Case(Table):
     """One run of an edition."""
 
     title: str
-    line: str  # name of a set of the package, or path of a file
-    pantograph: str
-    speed: float  # km/h
-    spans: tuple[int, int]  # first and last that are evaluated, from 1
-    static_force: float  # N
-    ranges: Mapping[str, Range]  # by name of FIGURES, in its units
+    line: Annotated[str, set_name(LINES)]
+    pantograph: Annotated[str, set_name(PANTOGRAPHS)]
+    speed: Positive = Field(description="km/h")
+    first_span: int = Field(ge=1, description="that is evaluated, from 1")
+    last_span: int = Field(ge=1, description="that is evaluated")
+    given_force: Positive | None = Field(None, alias="static_force", description="N")
+    supply: Supply = Field("", description="whose mean force by speed is the static force")
+    ranges: Annotated[dict[str, Range], BeforeValidator(_known)] = Field({}, description="in the units of FIGURES")
+
+    @property
+    def static_force(self) -> float:
+        """Static force in N."""
+        return mean_force(self.supply, self.speed) if self.given_force is None else self.given_force
+
+    @model_validator(mode="after")
+    def _fits(self) -> Case:
+        if self.speed > MOST_SPEED:
+            raise ValueError(f"speed = {self.speed:g} km/h: must be at most {MOST_SPEED:g} km/h")
+        if self.last_span < self.first_span:
+            raise ValueError(f"last_span = {self.last_span}: must be a whole number of at least {self.first_span}")
+        if not self.supply and self.given_force is None:
+            raise ValueError("static_force is missing")
+        if self.supply and self.given_force is not None:
+            raise ValueError("static_force and supply: give one of them")
+        return self
 
 
-@dataclass(frozen=True)
-class Edition:
+class Edition(Table):
     """What an edition of the standard asks for."""
 
-    name: str
+    name: str = Field(alias="edition")
     source: str
-    cases: tuple[Case, ...]
-    agreement: Mapping[str, float]  # largest difference of simulation and line test in %, by name of FIGURES
+    cases: list[Case] = Field([], alias="case")
+    agreement: Annotated[dict[str, Positive], BeforeValidator(_known)] = Field(
+        {}, description="largest difference of simulation and line test in %, by name of FIGURES"
+    )
+
+    @model_validator(mode="after")
+    def _is_complete(self) -> Edition:
+        if not self.source.strip():
+            raise ValueError("source is empty: say where the numbers are from")
+        if not self.cases:
+            raise ValueError("needs at least one [[case]]")
+        titles = [case.title for case in self.cases]
+        for title in titles:
+            if titles.count(title) > 1:
+                raise ValueError(f"two cases {title!r}")
+        return self
 
     def only_first(self) -> Edition:
         """The edition with its first case alone."""
-        return replace(self, cases=self.cases[:1])
+        return self.model_copy(update={"cases": self.cases[:1]})
 
     def case(self, title: str) -> Case:
         """The case of that title. Raises ZSpringError if there is none."""
@@ -100,60 +143,5 @@ def agreement(simulated: Statistics, measured: Statistics, limits: Mapping[str, 
 
 def read_edition(path: Path) -> Edition:
     """The edition of a TOML file. Raises ZSpringError, one line with the file and the key, for a bad one."""
-    try:
-        _, table = read_toml(path)
-        name, source = table.text("edition"), table.text("source")
-        if not source.strip():
-            raise ZSpringError("source is empty: say where the numbers are from")
-        entries = table.list("case")
-        cases = tuple(_case(path, entry, number) for number, entry in enumerate(entries, 1))
-        if not cases:
-            raise ZSpringError("needs at least one [[case]]")
-        titles = [case.title for case in cases]
-        for title in titles:
-            if titles.count(title) > 1:
-                raise ZSpringError(f"two cases {title!r}")
-        limits = Table(table.table("agreement"), "agreement")
-        _check_names(limits.content, "agreement")
-        edition = Edition(name, source, cases, {key: limits.number(key, above=0) for key in limits.content})
-        table.finish()
+    with settings_of(path, Edition) as edition:
         return edition
-    except ZSpringError as error:
-        text = str(error)
-        raise ZSpringError(text if text.startswith(str(path)) else f"{path}: {text}") from None
-
-
-def _case(path: Path, content: object, number: int) -> Case:
-    entry = Table(content, f"case {number}")
-    title, speed = entry.text("title"), entry.number("speed", above=0)
-    if speed > MOST_SPEED:
-        raise ZSpringError(f"case {number}: speed = {speed:g} km/h: must be at most {MOST_SPEED:g} km/h")
-    sets = [_set(path, entry.text("line"), LINES), _set(path, entry.text("pantograph"), PANTOGRAPHS)]
-    first = entry.integer("first_span", ..., 1)
-    last = entry.integer("last_span", ..., first)
-    supply = entry.text("supply", "")
-    if supply and supply not in STANDING:
-        raise ZSpringError(f"case {number}: supply = {supply!r}: must be one of {', '.join(STANDING)}")
-    force = entry.number("static_force", mean_force(supply, speed) if supply else ..., above=0)
-    if supply and "static_force" in entry.content:
-        raise ZSpringError(f"case {number}: static_force and supply: give one of them")
-    ranges = entry.table("ranges")
-    _check_names(ranges, f"case {number}: ranges")
-    for name, accepted in ranges.items():
-        is_pair = isinstance(accepted, Sequence) and len(accepted) == 2 and all(map(is_number, accepted))
-        if not is_pair or accepted[0] > accepted[1]:
-            raise ZSpringError(f"case {number}: ranges.{name} = {accepted!r}: must be [lowest, highest]")
-    entry.finish()
-    accepted = {name: (float(low), float(high)) for name, (low, high) in ranges.items()}
-    return Case(title, *sets, speed, (first, last), force, accepted)
-
-
-def _set(path: Path, name: str, kind: str) -> str:
-    """A packaged set's name, or the path of a file beside the edition's."""
-    return name if name in packaged_sets(kind) else str(path.parent / name)
-
-
-def _check_names(table: Mapping[str, object], where: str) -> None:
-    for name in table:
-        if name not in FIGURES:
-            raise ZSpringError(f"{where}: unknown figure {name!r}{did_you_mean(name, FIGURES)}")

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..bench.measured import Source
-from ..files import synthetic_note, used_parameters, write_table
 from ..fmu import Fmu
+from ..heads import synthetic_note
 from ..interrupt import Interrupted, stop_on_interrupt
 from ..line.series import Series, read_series
 from ..line.statistics import FIGURES, Section, Statistics, statistics
 from ..parameter_sets import LINES, find_set, read_set
+from ..tables import write_table
 from ..variables import Value
 from . import about, plot, report
 from .edition import Case, Edition, agreement, judge
@@ -134,7 +135,7 @@ def frf_chapter(
             raise Interrupted("interrupted: the frequency response is not complete, nothing is written")
     path = folder / "frf-comparison.csv"
     _write_frf(path, fmu, source, comparisons)
-    note = synthetic_note(fmu, used_parameters(fmu, parameters))
+    note = synthetic_note(fmu, fmu.used_parameters(parameters))
     title = f"{source.path.name} and {fmu.description.modelName}{note}"
     text = (
         f"Measured: {source.path}, force counted as that on the {source.force}. Computed: the FMU on its own "

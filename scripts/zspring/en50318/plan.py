@@ -150,7 +150,7 @@ def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run
 def section_of(case: Case, catenary: Fmu, line: Parameters) -> Section:
     """The evaluated spans of a case. Raises ZSpringError where the line has not so many."""
     extent = LineExtent.of(catenary, line)
-    first, last = case.spans
+    first, last = case.first_span, case.last_span
     if not 2 <= first <= last <= extent.spans - 1:
         raise ZSpringError(
             f"{case.title}: spans {first} to {last}: must be in 2 .. {extent.spans - 1}, between the first and "

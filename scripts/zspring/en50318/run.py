@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import sys
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tqdm import tqdm
-
-from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..interrupt import Interrupted, stop_on_interrupt
 from ..line.statistics import BAND, ORDER
+from ..records import Record, fill
 from . import about, chapters, report
 from .edition import Edition
+from .files import missing, put_in_order, run_record
 from .page import Chapter, write_report
-from .plan import head_runs, reference_runs, sensitivity_runs
-from .record import Record
-from .workers import run_all
+from .plan import Run, head_runs, reference_runs, sensitivity_runs
+from .workers import Finished, run_all
 
 TITLE = "EN 50318: simulation of pantograph and overhead line"
 
@@ -42,22 +37,22 @@ def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int
     sensitivity = sensitivity_runs(references[0]) if plan.with_sensitivity else []
     heads = head_runs(catenary, pantograph, plan.head_speeds) if plan.head_speeds else []
     runs = [*(run for each in references for run in each), *sensitivity, *heads]
-    record = Record(folder / "runs.csv", _head(catenary, pantograph), runs)
-    speed = _run_missing(record, len(runs), catenary, pantograph, folder, jobs)
+    record = run_record(folder / "runs.csv", _head(catenary, pantograph))
+    speed = _run_missing(record, runs, catenary, pantograph, folder, jobs)
+    found = {finished.key: finished.statistics for finished in record.results}
 
     outcomes = [
-        chapters.outcome(edition, its_runs, record.found, folder)
-        for edition, its_runs in zip(plan.editions, references)
+        chapters.outcome(edition, its_runs, found, folder) for edition, its_runs in zip(plan.editions, references)
     ]
     made = [chapters.edition_chapter(each, catenary, pantograph) for each in outcomes]
     if sensitivity:
-        made.insert(1, chapters.sensitivity_chapter(outcomes[0], sensitivity, record.found))
+        made.insert(1, chapters.sensitivity_chapter(outcomes[0], sensitivity, found))
     lines = [line for each in outcomes for line in _summary(each)]
     if sensitivity:
         lines.append(made[1].blocks[1].removesuffix("."))
     if heads:
-        made.append(chapters.heads_chapter(heads, record.found, folder))
-        by_head = chapters.heads(heads, record.found)
+        made.append(chapters.heads_chapter(heads, found, folder))
+        by_head = chapters.heads(heads, found)
         for name in ("standard_deviation", "loss_of_contact"):
             lines += ["", *report.as_lines(report.heads_table(by_head, name))]
     series = [folder / run.series for run in runs if run.series]
@@ -74,36 +69,24 @@ def finish(
     return [page, *files, *pictures]
 
 
-def _run_missing(record: Record, total: int, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int) -> str:
+def _run_missing(
+    record: Record[Finished], runs: Sequence[Run], catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int
+) -> str:
     """Make the runs that the record has not; a line on the time they took."""
-    missing = record.missing
-    if record.is_stale:
-        print(f"{record.path} does not fit these settings: begun anew")
-    if not missing:
-        return f"all {total} runs are in {record.path}"
-    if len(missing) < total:
-        print(f"going on after {total - len(missing)} of {total} runs in {record.path}")
-    begin, done = time.perf_counter(), 0
-    with (
-        stop_on_interrupt() as stop,
-        record,
-        tqdm(total=total, initial=total - len(missing), unit=" runs", disable=None, file=sys.stderr) as bar,
-    ):
-        try:
-            for finished in run_all(missing, catenary.path, pantograph.path, folder, jobs, stop):
-                record.append(finished)
-                done += 1
-                bar.update()
-        except ZSpringError as error:
-            kept = total - len(missing) + done
-            raise ZSpringError(f"{error}; {kept} of {total} runs are kept in {record.path}") from None
-    if done < len(missing):
-        raise Interrupted(
-            f"interrupted after {total - len(missing) + done} of {total} runs, kept in {record.path}; "
-            "the same command goes on from there"
+    todo = missing(record, runs)
+    if not todo:
+        return f"all {len(runs)} runs are in {record.path}"
+    try:
+        seconds = fill(
+            record,
+            len(runs),
+            len(todo),
+            "runs",
+            lambda stop: run_all(todo, catenary.path, pantograph.path, folder, jobs, stop),
         )
-    seconds = time.perf_counter() - begin
-    return f"{done} runs in {seconds:.1f} s on {min(jobs, done)} processes"
+    finally:
+        put_in_order(record, runs)
+    return f"{len(todo)} runs in {seconds:.1f} s on {min(jobs, len(todo))} processes"
 
 
 def _summary(made: chapters.Outcome) -> list[str]:

@@ -27,7 +27,8 @@ from .plan import Run
 class Finished:
     """What a run came to."""
 
-    run: Run
+    key: str  # of the run
+    told: tuple[str, ...]  # group, of, label, speed in km/h, section
     statistics: Statistics
     seconds: float  # of CPU
 
@@ -82,4 +83,5 @@ def _execute(run: Run, folder: Path) -> Finished:
         unfinished = path.with_name(f"unfinished-{path.name}")
         write_result(result, unfinished)
         os.replace(unfinished, path)
-    return Finished(run, found, result.elapsed)
+    told = run.group, run.of, run.label, repr(run.speed), str(run.section)
+    return Finished(run.key, told, found, result.elapsed)

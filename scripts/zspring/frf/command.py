@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-
 import click
 
 from ..bench.measure import BENCH_PARAMETERS, BENCHES, LOOK_PERIODS, FrfSettings
@@ -13,11 +11,13 @@ from ..options import (
     chosen_parameters,
     fmu_option,
     format_option,
+    jobs_option,
     opened,
     output_option,
     parameters_option,
     set_option,
 )
+from ..records import claimed
 
 STANDARD = FrfSettings()
 
@@ -97,12 +97,7 @@ STANDARD = FrfSettings()
     is_flag=True,
     help="Measure at half the internal step, too, and estimate the error of H from both.",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Sweeps at a time (amplitudes; single points from rest).  [default: number of processors]",
-)
+@jobs_option("Sweeps at a time (amplitudes; single points from rest).")
 @format_option
 @fmu_option
 def frf(
@@ -128,8 +123,8 @@ def frf(
     Without options: the standard figure. Writes frf.csv and frf.png, and prints resonances and
     antiresonances.
 
-    Ctrl-C keeps all finished points, and the same command goes on from there. With other settings in the same
-    folder the measurement begins anew.
+    Ctrl-C keeps all finished points, and the same command goes on from there; with other settings it needs
+    another folder.
     """
     if max_periods < min_periods:
         raise click.BadParameter(
@@ -142,12 +137,6 @@ def frf(
         settings = FrfSettings(
             amplitudes, frequencies, parameters, direction, through, tolerance, min_periods, max_periods, stroke
         )
-        run_frf(
-            fmu,
-            settings,
-            output or default_folder(fmu, settings),
-            quantity,
-            suffix,
-            jobs or os.cpu_count() or 1,
-            error_estimate,
-        )
+        folder = output or default_folder(fmu, settings)
+        with claimed(folder):
+            run_frf(fmu, settings, folder, quantity, suffix, jobs, error_estimate)

@@ -3,44 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from datetime import datetime, timezone
 
 import numpy as np
 
 from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, FrfPoint, FrfSettings
 from ..bench.resonances import extremes
 from ..fmu import Fmu
+from ..heads import file_head, now, synthetic_note
 from ..receptance import receptance
-from ..variables import Value, text, with_unit
+from ..variables import Value, text
 
 Curve = tuple[np.ndarray, np.ndarray]  # frequency (n,) in Hz, receptance (n,) in m/N
 
 
-def file_head(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], quantity: str) -> dict[str, str]:
-    """Everything that defines the numbers of an FRF file, and the date (UTC).
+def frf_head(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], quantity: str) -> dict[str, str]:
+    """Everything that defines the numbers of an FRF file, and the date.
 
     `parameters` are all parameters of the FMU, calculated ones included.
     """
-    head = {
-        "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        **fmu.identity,
+    own = {
+        "date": now(),
         "SHA-256 of the FMU": fmu.sha256,
-        "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
         "quantity": "receptance H" if quantity == "receptance" else "dynamic stiffness 1/H",
-        "through": settings.through,
-        "direction": settings.direction,
-        "amplitudes": _numbers(settings.amplitudes) + " m/s2",
-        "frequencies": _numbers(settings.frequencies) + " Hz",
-        "tolerance": f"{settings.tolerance!r}",
-        "periods": f"{settings.min_periods} to {settings.max_periods}",
-        "stroke": f"{settings.stroke!r} m",
-        "synthetic": " ".join(fmu.variables.synthetic(parameters)),
+        **settings.described(),
     }
-    for name, value in parameters.items():
-        if name not in BENCH_PARAMETERS:
-            variable = fmu.variables[name]
-            head[name] = with_unit(variable, value)
-    return head
+    return file_head(fmu, parameters, own, but_not=BENCH_PARAMETERS)
 
 
 def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value]) -> str:
@@ -48,10 +35,7 @@ def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value]) -> s
     suspension, friction = (text(fmu.variables[name], parameters[name]) for name in ("suspension", "friction"))
     model = f"Z-spring, friction {friction}" if suspension == "ZSpring" else f"suspension {suspension}"
     course = "each point from rest" if settings.direction == "rest" else f"sweep {settings.direction}"
-    synthetic = suspension != "Linear" and fmu.variables.synthetic(parameters)
-    return f"Pantograph head, first-order FRF\n{model}, {course}" + (
-        "; Z-spring parameters synthetic" if synthetic else ""
-    )
+    return f"Pantograph head, first-order FRF\n{model}, {course}{synthetic_note(fmu, parameters)}"
 
 
 def linear_bounds(settings: FrfSettings, parameters: Mapping[str, Value], linear: bool) -> dict[str, Curve]:
@@ -114,7 +98,3 @@ def doubtful_lines(points: Iterable[FrfPoint]) -> list[str]:
 
 def _cells(found: Iterable[tuple[float, float]]) -> str:
     return "   ".join(f"{frequency:6.3f} ({1e3 * magnitude:.4f})" for frequency, magnitude in found)
-
-
-def _numbers(values: Iterable[float]) -> str:
-    return " ".join(repr(value).removesuffix(".0") for value in values)

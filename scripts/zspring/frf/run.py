@@ -4,24 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import math
-import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
-from tqdm import tqdm
-
 from ..bench.measure import BENCHES, FAILED, FrfPoint, FrfSettings, left_out, measure, sweeps
-from ..errors import ZSpringError
+from ..errors import ZSpringError, tell
 from ..figures import save
 from ..fmu import Fmu
-from ..interrupt import Interrupted, stop_on_interrupt
+from ..records import Record, fill
 from ..variables import Value, text
 from . import report
-from .files import FrfRecord, write_frf
+from .files import Kept, frf_record, remaining, write_frf
 from .plot import frf_figure
-
-MOST_DOUBTFUL_LINES = 10
 
 Points = dict[tuple[float, float], FrfPoint]  # by amplitude in m/s2 and frequency in Hz
 
@@ -41,14 +35,14 @@ def run_frf(
     if not sweeps(settings):
         raise ZSpringError(f"nothing to measure: all points need more stroke than {settings.stroke:g} m")
     parameters = all_parameters(fmu, settings)
-    head = report.file_head(fmu, settings, parameters, quantity)
-    record = FrfRecord(folder / "frf.partial.csv", head, quantity)
+    head = report.frf_head(fmu, settings, parameters, quantity)
+    record = frf_record(folder / "frf.partial.csv", head, quantity)
     points, speed = _measure(fmu, settings, record, jobs, "step")
     records, errors = [record], None
     if error_estimate:
         finer = replace(settings, parameters={**settings.parameters, "solver.step": parameters["solver.step"] / 2})
-        finer_head = report.file_head(fmu, finer, all_parameters(fmu, finer), quantity)
-        records.append(FrfRecord(folder / "frf.half-step.partial.csv", finer_head, quantity))
+        finer_head = report.frf_head(fmu, finer, all_parameters(fmu, finer), quantity)
+        records.append(frf_record(folder / "frf.half-step.partial.csv", finer_head, quantity))
         finer_points, _ = _measure(fmu, finer, records[-1], jobs, "half step")
         estimates = {key: report.richardson(point.H, finer_points[key].H) for key, point in points.items()}
         errors = {key: error for key, error in estimates.items() if math.isfinite(error)}
@@ -67,11 +61,7 @@ def run_frf(
     if errors:
         print(report.error_line(errors))
     print(f"written: {csv_path} {figure_path}")
-    doubtful = report.doubtful_lines(results)
-    for line in doubtful[:MOST_DOUBTFUL_LINES]:
-        print(line, file=sys.stderr)
-    if len(doubtful) > MOST_DOUBTFUL_LINES:
-        print(f"and {len(doubtful) - MOST_DOUBTFUL_LINES} more, see {csv_path}", file=sys.stderr)
+    tell(report.doubtful_lines(results), csv_path)
     failed = sum(point.status.startswith(FAILED) for point in results)
     if failed:
         raise ZSpringError(f"{failed} of {len(points)} points could not be solved; the others are written")
@@ -79,10 +69,9 @@ def run_frf(
 
 def all_parameters(fmu: Fmu, settings: FrfSettings) -> dict[str, Value]:
     """All parameters that the FMU runs with, calculated ones included. Raises FmuError if it refuses one."""
-    names = fmu.variables.names("parameter", "calculatedParameter")
     with fmu.instances() as (instance,):
         BENCHES[settings.through](instance, settings.parameters).start(settings.frequencies[0], settings.amplitudes[0])
-        return dict(zip(names, instance.get(names)))
+        return instance.used_parameters()
 
 
 def default_folder(fmu: Fmu, settings: FrfSettings) -> Path:
@@ -97,34 +86,17 @@ def default_folder(fmu: Fmu, settings: FrfSettings) -> Path:
     return Path("results") / name
 
 
-def _measure(fmu: Fmu, settings: FrfSettings, record: FrfRecord, jobs: int, label: str) -> tuple[Points, str]:
+def _measure(fmu: Fmu, settings: FrfSettings, record: Record[Kept], jobs: int, label: str) -> tuple[Points, str]:
     """All points of the settings, with a labelled progress bar, and a line on the time it took."""
     planned = sweeps(settings)
-    todo = record.remaining(planned)
+    todo = remaining(record, planned)
     total, missing = (sum(len(sweep.frequencies) for sweep in some) for some in (planned, todo))
-    if record.is_stale:
-        print(f"{record.path} does not fit these settings: begun anew")
-    elif missing < total:
-        print(f"going on after {total - missing} of {total} points in {record.path}")
-    begin = time.perf_counter()
-    with (
-        stop_on_interrupt() as stop,
-        record,
-        tqdm(total=total, initial=total - missing, desc=label, unit=" points", disable=None) as bar,
-    ):
-        for point, state in measure(fmu, settings, todo, jobs, stop):
-            record.append(point, state)
-            bar.update()
-    seconds = time.perf_counter() - begin
-    if stop.is_set():
-        raise Interrupted(
-            f"interrupted after {len(record.points)} of {total} points, kept in {record.path}; "
-            "the same command goes on from there"
-        )
+    seconds = fill(record, total, missing, "points", lambda stop: measure(fmu, settings, todo, jobs, stop), label)
+    points = {(point.amplitude, point.frequency): point for point, _ in record.results}
     count = f"{missing} of {total}" if missing < total else total
     keys = [(sweep.amplitude, frequency) for sweep in planned for frequency in sweep.frequencies]
     return (
-        {key: record.points[key] for key in keys},
+        {key: points[key] for key in keys},
         f"{count} points in {seconds:.2f} s, {missing / max(seconds, 1e-9):.0f} points/s; "
         f"{len(left_out(settings))} left out: stroke > {1e3 * settings.stroke:g} mm",
     )

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-import importlib.resources
-import os
-import shutil
 from pathlib import Path
 
 import click
 
-from ..errors import ZSpringError
-from ..options import fmu_option, format_option, opened, output_option, parameters_option, set_option
+from ..options import (
+    copy_examples,
+    fmu_option,
+    format_option,
+    jobs_option,
+    opened,
+    output_option,
+    parameters_option,
+    set_option,
+)
+from ..records import claimed
 
 EXAMPLE = ("identify.toml", "bench.csv")
 
@@ -26,12 +32,7 @@ EXAMPLE = ("identify.toml", "bench.csv")
 @parameters_option
 @set_option
 @output_option(described="results/identify-SETTINGS")
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Amplitudes to simulate at a time.  [default: number of processors]",
-)
+@jobs_option("Amplitudes to simulate at a time.")
 @format_option
 @fmu_option
 def identify(settings_path, example, parameter_set, assignments, output, jobs, suffix, fmu_path) -> None:
@@ -48,7 +49,7 @@ def identify(settings_path, example, parameter_set, assignments, output, jobs, s
     fit.png and identify.log. Ctrl-C keeps the search, and the same command goes on from there.
     """
     if example:
-        _write_example(example)
+        copy_examples(example, {name: f"examples/{name}" for name in EXAMPLE})
         return
     if settings_path is None:
         raise click.UsageError("name a SETTINGS.toml, or a folder for an --example")
@@ -58,16 +59,5 @@ def identify(settings_path, example, parameter_set, assignments, output, jobs, s
     with opened(fmu_path) as fmu:
         settings = read_settings(settings_path, fmu, parameter_set, assignments)
         folder = output or Path("results") / f"identify-{settings_path.stem}"
-        run_identification(fmu, settings, folder, suffix, jobs or os.cpu_count() or 1)
-
-
-def _write_example(folder: Path) -> None:
-    """Copy the example's files. Raises ZSpringError where one would be overwritten."""
-    source = Path(str(importlib.resources.files("zspring") / "resources" / "examples"))
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in EXAMPLE:
-        if (folder / name).exists():
-            raise ZSpringError(f"{folder / name} exists and is kept: name another folder")
-    for name in EXAMPLE:
-        shutil.copy(source / name, folder / name)
-    print("written:", *(folder / name for name in EXAMPLE))
+        with claimed(folder):
+            run_identification(fmu, settings, settings_path, folder, suffix, jobs)

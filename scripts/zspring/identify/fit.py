@@ -54,7 +54,7 @@ def fit(problem: Problem, x: np.ndarray, progress: Callable[[float], None]) -> F
     unbound_error, _ = statistics(problem, result.x, jacobian, np.zeros_like(held), result.cost)
     return Fit(
         x=result.x,
-        values=np.array([free.value(at) for free, at in zip(problem.settings.free, result.x)]),
+        values=np.array([free.value(at) for free, at in zip(problem.settings.free.values(), result.x)]),
         answer=answer,
         cost=float(result.cost),
         is_converged=bool(result.status > 0),
@@ -91,7 +91,7 @@ def statistics(
     variance = 2 * cost / max(J.shape[0] - kept.size, 1)
     covariance = variance * (inverse @ inverse.T) / np.outer(scale, scale)
     sigma = np.sqrt(np.diag(covariance))
-    slopes = np.array([problem.settings.free[i].slope(x[i]) for i in kept])
+    slopes = np.array([free.slope(at) for free, at in zip(problem.settings.free.values(), x)])[kept]
     error[kept] = np.where(lost, np.inf, sigma * slopes)
     with np.errstate(invalid="ignore", divide="ignore"):
         matrix = covariance / np.outer(sigma, sigma)

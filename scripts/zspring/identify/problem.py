@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -110,13 +110,13 @@ class Problem:
         fixed = dict(self.settings.fixed)
         if "solver.step" in fixed:
             fixed["solver.step"] = max(fixed["solver.step"], COARSE_STEP)
-        settings = replace(self.settings, fixed=fixed)
+        settings = self.settings.model_copy(update={"fixed": fixed})
         return Problem(settings, self._model.with_curves(curves), curves, self.static)
 
     @property
     def start(self) -> np.ndarray:
         """x (n,) of the start values."""
-        return np.array([free.x(free.start) for free in self.settings.free])
+        return np.array([free.x(free.start) for free in self.settings.free.values()])
 
     def answers(self, xs: Sequence[np.ndarray]) -> list[Answer]:
         return self._model.answers([self.settings.parameters(x) for x in xs])
@@ -155,7 +155,8 @@ class Problem:
     def jacobian(self, x: np.ndarray, answer: Answer, columns: Sequence[int]) -> np.ndarray:
         """d residuals / dx (m, len(columns)) at x, whose answer it is, by one-sided differences."""
         base, steps = self.residuals(answer), []
-        for free, at in ((self.settings.free[i], x[i]) for i in columns):
+        frees = list(self.settings.free.values())
+        for free, at in ((frees[i], x[i]) for i in columns):
             scale = max(abs(free.value(at)), 1e-3 * (free.maximum - free.minimum)) / free.slope(at)
             step = min(self.relative_step * scale, 0.25)
             steps.append(step if at + step <= 1 else -step)

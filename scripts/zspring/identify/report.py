@@ -17,15 +17,15 @@ STRONG_CORRELATION = 0.98
 def parameter_table(fmu: Fmu, problem: Problem, fit: Fit) -> list[str]:
     """Fitted values with standard errors, start values and bounds."""
     rows = [["", "fitted", "std. error", "unit", "start", "bounds", ""]]
-    for i, free in enumerate(problem.settings.free):
+    for i, (name, free) in enumerate(problem.settings.free.items()):
         error = fit.standard_error[i]
         relative = f" ({100 * error / abs(fit.values[i]):.2g} %)" if fit.values[i] and np.isfinite(error) else ""
         rows.append(
             [
-                free.name,
+                name,
                 _with_error(fit.values[i], error),
                 "-" if np.isnan(error) else f"{error:.2g}{relative}",
-                fmu.variables[free.name].unit or "",
+                fmu.variables[name].unit or "",
                 f"{free.start:g}",
                 f"{free.minimum:g} .. {free.maximum:g}",
                 "at the bound" if fit.at_bound[i] else "",
@@ -37,25 +37,24 @@ def parameter_table(fmu: Fmu, problem: Problem, fit: Fit) -> list[str]:
 def doubts(problem: Problem, fit: Fit) -> list[str]:
     """A line for everything that makes the result less than it seems."""
     lines = [] if fit.is_converged else [f"least squares did not converge: {fit.message}"]
-    free = problem.settings.free
-    for i, parameter in enumerate(free):
-        error, half_range = fit.unbound_error[i], (parameter.maximum - parameter.minimum) / 2
+    names = list(problem.settings.free)
+    for i, (name, free) in enumerate(problem.settings.free.items()):
+        error, half_range = fit.unbound_error[i], (free.maximum - free.minimum) / 2
         place = f", at its bound {fit.values[i]:g}" if fit.at_bound[i] else ""
         if np.isinf(error):
-            lines.append(f"the data do not determine {parameter.name}{place}: no effect of its own on the fit")
+            lines.append(f"the data do not determine {name}{place}: no effect of its own on the fit")
         elif error > half_range:
             lines.append(
-                f"the data do not determine {parameter.name}{place}: its standard error {error:.2g} is more "
+                f"the data do not determine {name}{place}: its standard error {error:.2g} is more "
                 "than half the range between its bounds"
             )
         elif fit.at_bound[i]:
-            lines.append(f"{parameter.name} is at its bound {fit.values[i]:g}: the data want it there or beyond")
-    for i in range(len(free)):
+            lines.append(f"{name} is at its bound {fit.values[i]:g}: the data want it there or beyond")
+    for i in range(len(names)):
         for j in range(i):
             if abs(fit.correlation[i, j]) > STRONG_CORRELATION:
                 lines.append(
-                    f"{free[j].name} and {free[i].name} can hardly be told apart: correlation "
-                    f"{fit.correlation[i, j]:.3f}"
+                    f"{names[j]} and {names[i]} can hardly be told apart: correlation {fit.correlation[i, j]:.3f}"
                 )
     failed = sum(int(np.sum(~np.isfinite(H))) for H in fit.answer.curves)
     if failed:
@@ -65,7 +64,7 @@ def doubts(problem: Problem, fit: Fit) -> list[str]:
 
 def correlation_table(problem: Problem, fit: Fit) -> list[str]:
     """Correlations of the fitted parameters, below the diagonal."""
-    names = [free.name for free in problem.settings.free]
+    names = list(problem.settings.free)
     rows = [["correlation", *names[:-1]]]
     for i in range(1, len(names)):
         cells = (fit.correlation[i, j] for j in range(i))

@@ -2,41 +2,43 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import sys
 import time
-from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
 
 import numpy as np
 from tqdm import tqdm
 
+from ..bench.measure import FrfSettings
 from ..bench.measured import in_band, read_curves, sign_warning
 from ..bench.model import BenchModel
 from ..bench.static_test import read_static_test
 from ..errors import ZSpringError
 from ..figures import save
 from ..fmu import Fmu
+from ..heads import file_head
 from ..interrupt import Interrupted, stop_on_interrupt
 from ..parameter_sets import write_set
-from ..tables import write_head
-from ..variables import Value, parse, with_unit
+from ..records import Record
+from ..tables import write_table
+from ..variables import Value, parse
 from . import report
 from .fit import Fit, fit
 from .plot import fit_figure, static_figure
 from .problem import Problem, ThreeMassModel, ZSpringModel
-from .search import CostRecord, search
+from .search import Cost, cost_record, search
 from .settings import LINEAR_PARAMETERS, Settings
 
 # Of the bench, the line and the solver, so not of a pantograph.
 OTHER_PARAMETERS = ("drive", "bench.", "contact.", "solver.")
 
 
-def identify(fmu: Fmu, settings: Settings, folder: Path, suffix: str, jobs: int) -> None:
+def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str, jobs: int) -> None:
     """Fit, going on where an interrupted search in the folder stopped; write and print all results.
 
+    path        of the settings, for the log
     suffix      of the figures, "png" or "svg"
     jobs        number of amplitudes measured at a time
     Raises ZSpringError for bad data, FmuError when the FMU refuses the start values, Interrupted after
@@ -65,7 +67,7 @@ def identify(fmu: Fmu, settings: Settings, folder: Path, suffix: str, jobs: int)
                 model = ZSpringModel(bench, curves, static)
             problem = Problem(settings, model, curves, static)
             bench.check(settings.parameters(problem.start))
-            log.write(f"settings {settings.path}:\n{settings.text}")
+            log.write(f"settings {path}:\n{path.read_text(encoding='utf-8')}")
             begin = time.perf_counter()
             x = problem.start
             if settings.search.generations:
@@ -100,7 +102,7 @@ def identify(fmu: Fmu, settings: Settings, folder: Path, suffix: str, jobs: int)
     print("written:", *paths, folder / "identify.log")
 
 
-def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[np.ndarray, CostRecord]:
+def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[np.ndarray, Record[Cost]]:
     """Where to begin the fit, and the record of the search, which may be removed after it.
 
     On a part of the points: the global search, then least squares from its best and from the start values.
@@ -110,15 +112,13 @@ def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[
     files = [*(source.path for source in settings.sources), *([settings.static.path] if settings.static else [])]
     head = {
         "FMU": fmu.sha256,
-        "settings": repr(replace(settings, text="")),
-        **{str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
+        "settings": repr(settings),
+        **{f"file {i}": f"{hashlib.sha256(path.read_bytes()).hexdigest()} {path}" for i, path in enumerate(files, 1)},
     }
-    record = CostRecord(folder / "search.partial.jsonl", head)
-    if record.is_stale:
-        print(f"{record.path} does not fit these settings and measurements: begun anew")
-    elif record.found:
-        print(f"going on after {record.found} candidates in {record.path}")
-    with tqdm(total=settings.search.generations, desc="search", unit=" generations", disable=None) as bar:
+    record = cost_record(folder / "search.partial.csv", head, list(settings.free))
+    if record.results:
+        print(f"going on after {len(record.results)} candidates in {record.path}")
+    with record, tqdm(total=settings.search.generations, desc="search", unit=" generations", disable=None) as bar:
 
         def progress(generation: int, cost: float) -> None:
             log.write(f"search, generation {generation}: best cost {cost:.6g}")
@@ -167,12 +167,12 @@ def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Valu
     else:
         names = [name for name in values if not name.startswith(OTHER_PARAMETERS) and name != "k1"]
     remarks = {
-        free.name: "identified, at its bound"
+        name: "identified, at its bound"
         if result.at_bound[i]
         else f"identified, standard error {result.standard_error[i]:.2g}"
-        for i, free in enumerate(settings.free)
+        for i, name in enumerate(settings.free)
     }
-    remarks |= {name: f"tied to {to}" for name, (to, _) in settings.tied.items()}
+    remarks |= {name: f"tied to {tie.to}" for name, tie in settings.tied.items()}
     files = ", ".join(source.path.name for source in settings.sources)
     date = datetime.now(timezone.utc).strftime("%Y-%m-%d")
     description = f"Identified from {files} on {date}, {settings.model} model; see {path.parent.name}/identify.log"
@@ -182,26 +182,20 @@ def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Valu
 
 def _write_points(fmu: Fmu, problem: Problem, result: Fit, path: Path) -> Path:
     settings = problem.settings
-    head = {
-        **fmu.identity,
+    own = {
         "measured": " ".join(str(source.path) for source in settings.sources),
         "model": settings.model,
         "error": settings.error,
-        "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
-        **{name: with_unit(fmu.variables[name], value) for name, value in settings.parameters(result.x).items()},
+        "H": FrfSettings().described()["H"],
     }
     columns = ["frequency [Hz]", "amplitude [m/s2]"]
     columns += [f"{kind}_{part} [m/N]" for kind in ("measured", "fitted") for part in ("re", "im")]
     columns += ["magnitude_error [%]", "phase_error [deg]"]
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        write_head(file, head, columns)
-        writer = csv.writer(file, lineterminator="\n")
-        for curve, H in zip(problem.curves, result.answer.curves):
-            errors = 100 * report.magnitude_error(curve, H), report.phase_error(curve, H)
-            parts = curve.H.real, curve.H.imag, H.real, H.imag
-            rows = zip(curve.frequency, curve.acceleration, *parts, *errors)
-            writer.writerows([repr(float(cell)) for cell in row] for row in rows)
-    return path
+    rows: list[tuple[float, ...]] = []
+    for curve, H in zip(problem.curves, result.answer.curves):
+        errors = 100 * report.magnitude_error(curve, H), report.phase_error(curve, H)
+        rows += zip(curve.frequency, curve.acceleration, curve.H.real, curve.H.imag, H.real, H.imag, *errors)
+    return write_table(path, file_head(fmu, settings.parameters(result.x), own), columns, rows, digits=None)
 
 
 class _Log:

@@ -6,57 +6,36 @@ the same candidates in the same order, and finds those it has had in the file.
 
 from __future__ import annotations
 
-import json
-import os
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 from scipy.optimize import differential_evolution
 
 from ..interrupt import Interrupted
+from ..records import Record
 from .problem import Problem
 from .settings import Search
 
+Cost = tuple[tuple[float, ...], float]  # of an x
 
-class CostRecord:
-    """Costs by x, on disk at once. A file with another head, or one that cannot be read, is begun anew."""
 
-    def __init__(self, path: Path, head: Mapping[str, str]):
-        self.path = path
-        self._costs: dict[bytes, float] = {}
-        self.is_stale = False
-        lines = []
-        if path.exists():
-            try:
-                first, *rest = path.read_text(encoding="utf-8").splitlines(keepends=True)
-                self.is_stale = json.loads(first) != dict(head)
-                if not self.is_stale:
-                    lines = [json.loads(line) for line in rest if line.endswith("\n")]
-                    self._costs = {np.array(x).tobytes(): cost for *x, cost in lines}
-            except (ValueError, TypeError):  # somebody changed the file
-                lines, self._costs, self.is_stale = [], {}, True
-        self.found = len(self._costs)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        fresh = path.with_suffix(".new")
-        fresh.write_text("".join(json.dumps(line) + "\n" for line in [dict(head), *lines]), encoding="utf-8")
-        os.replace(fresh, path)
-
-    def costs(self, xs: list[np.ndarray], compute: Callable[[list[np.ndarray]], np.ndarray]) -> np.ndarray:
-        """Costs (len(xs),) from the record, those it has not from `compute`."""
-        missing = [x for x in xs if x.tobytes() not in self._costs]
-        with open(self.path, "a", encoding="utf-8") as file:
-            for x, cost in zip(missing, compute(missing) if missing else ()):
-                self._costs[x.tobytes()] = float(cost)
-                file.write(json.dumps([*x.tolist(), float(cost)]) + "\n")
-        return np.array([self._costs[x.tobytes()] for x in xs])
+def cost_record(path: Path, head: Mapping[str, str], names: Sequence[str]) -> Record[Cost]:
+    """Costs by x, the free parameters of these names between their bounds."""
+    return Record(
+        path,
+        head,
+        [*names, "cost"],
+        lambda found: [*found[0], found[1]],
+        lambda row: (tuple(float(row[name]) for name in names), float(row["cost"])),
+    )
 
 
 def search(
     problem: Problem,
     settings: Search,
-    record: CostRecord,
+    record: Record[Cost],
     stop: threading.Event,
     progress: Callable[[int, float], None],
 ) -> np.ndarray:
@@ -66,13 +45,19 @@ def search(
     Raises Interrupted once `stop` is set; the costs so far are in the record.
     """
 
+    known = dict(record.results)
+
     def compute(xs: list[np.ndarray]) -> np.ndarray:
-        costs = problem.costs(xs)
+        missing = [x for x in xs if tuple(x.tolist()) not in known]
+        costs = problem.costs(missing) if missing else ()
         if stop.is_set():
             raise Interrupted(
                 f"interrupted; the global search so far is kept in {record.path}; the same command goes on from there"
             )
-        return costs
+        for x, cost in zip(missing, costs):
+            known[tuple(x.tolist())] = float(cost)
+            record.append((tuple(x.tolist()), float(cost)))
+        return np.array([known[tuple(x.tolist())] for x in xs])
 
     def report(intermediate_result) -> None:
         nonlocal generation
@@ -91,7 +76,7 @@ def search(
         tol=1e-2,
         polish=False,
         updating="deferred",
-        workers=lambda _, xs: record.costs([np.array(x) for x in xs], compute),
+        workers=lambda _, xs: compute([np.array(x) for x in xs]),
         callback=report,
     )
     return result.x

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
 
 from ..bench.measure import BENCH_PARAMETERS
 from ..bench.measured import Source
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..parameter_sets import find_set, packaged_sets, read_set
-from ..toml_tables import Table, flatten, has_table, is_plain, read_toml
-from ..variables import Value, parse
+from ..parameter_sets import PANTOGRAPHS, find_set, read_set
+from ..settings import ALL_FREQUENCIES, Band, BesidePath, Positive, Table, by_full_name, set_name, settings_of
+from ..variables import Value, Variables, parse
 
 LINEAR_PARAMETERS = ("m1", "m2", "m3", "c1", "c2", "c3", "k1", "k2", "k3")
 # At the FMU's own step of 2 ms HHT's error near 12 Hz would go into the parameters: 1.6 % of zspring.l0.
@@ -21,14 +23,23 @@ ACCURATE_STEP = 5e-4  # s
 LOG_RANGE = 10.0  # a parameter whose bounds are positive and further apart is searched on a logarithmic scale
 
 
-@dataclass(frozen=True)
-class Free:
-    """A parameter to identify; the optimiser sees it as x from 0 (minimum) to 1 (maximum)."""
+class Free(Table):
+    """Start value and bounds of a parameter to identify, in the FMU's unit.
 
-    name: str
+    The optimiser sees the parameter as x from 0 (minimum) to 1 (maximum).
+    """
+
     start: float
-    minimum: float
-    maximum: float
+    minimum: float = Field(alias="min")
+    maximum: float = Field(alias="max")
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Free:
+        if not self.minimum < self.maximum:
+            raise ValueError(f"min = {self.minimum:g} must be below max = {self.maximum:g}")
+        if not self.minimum <= self.start <= self.maximum:
+            raise ValueError(f"start = {self.start:g} must lie in {self.minimum:g} .. {self.maximum:g}")
+        return self
 
     @property
     def is_logarithmic(self) -> bool:
@@ -55,47 +66,93 @@ class Free:
         return self.maximum - self.minimum
 
 
-@dataclass(frozen=True)
-class Search:
+class Search(Table):
     """Differential evolution before the least squares."""
 
-    generations: int
-    population: int = 10
-    points: int = 12
-    seed: int = 1
+    generations: int = Field(default=12, ge=0, description="at most; 0 for none")
+    population: int = Field(default=10, ge=1, description="candidates for each free parameter")
+    points: int = Field(default=12, ge=1, description="at most for each amplitude")
+    seed: int = Field(default=1, ge=0)
 
 
-@dataclass(frozen=True)
-class Static:
+class Static(Table):
     """A static test and its weight."""
 
-    path: Path
-    speed: float = 0.005
-    weight: float = 1.0
+    path: BesidePath = Field(alias="file")
+    speed: Positive = Field(0.005, description="m/s, where the file has no time")
+    weight: Positive = Field(1.0, description="relative to all frequency responses together")
 
 
-@dataclass(frozen=True)
-class Settings:
-    """All that defines a fit."""
+class Tie(Table):
+    """To a parameter of which the tied one is `factor` times as much; in the file, its name alone will do."""
 
-    path: Path
-    model: str
-    sources: tuple[Source, ...]
-    free: tuple[Free, ...]
-    fixed: Mapping[str, Value]  # all parameters that are given, by name
-    tied: Mapping[str, tuple[str, float]]  # (other parameter, factor) by name
-    search: Search
-    band: tuple[float, float] = (0.0, math.inf)
-    error: str = "log"
-    quantity: str = "receptance"
-    direction: str = "up"
+    to: str
+    factor: float = 1.0
+
+    @model_validator(mode="before")
+    @classmethod
+    def _name_alone(cls, content: Any) -> Any:
+        return content if isinstance(content, Mapping) else {"to": content}
+
+
+class Measurement(Table):
+    """A file of measured responses and what it does not tell, see Source."""
+
+    path: BesidePath = Field(alias="file")
+    amplitude: Positive | None = Field(None, description="m/s2, peak")
+    force: Literal["specimen", "contact"] = "specimen"
+    fixture_mass: float = Field(0.0, ge=0, description="kg, of what moves between load cell and head")
+
+
+class Settings(Table):
+    """All that defines a fit. Tables of parameters are by their names."""
+
+    model: Literal["linear", "zspring"]
+    parameter_set: Annotated[str, set_name(PANTOGRAPHS)] = Field("", alias="parameters")
+    band: Band = ALL_FREQUENCIES
+    error: Literal["log", "linear"] = "log"
+    quantity: Literal["receptance", "stiffness"] = "receptance"
+    direction: Literal["up", "down", "rest"] = "up"
+    measurement: list[Measurement] = Field([], min_length=1, validate_default=True)
     static: Static | None = None
-    text: str = field(default="", repr=False)  # of the file
+    free: Annotated[dict[str, Free], by_full_name(Free)] = Field({}, min_length=1, validate_default=True)
+    fixed: Annotated[dict[str, Any], by_full_name()] = Field({}, description="once read, all that are given")
+    tied: Annotated[dict[str, Tie], by_full_name(Tie)] = Field({})
+    search: Search = Search()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _defaults_of_the_linear_model(cls, content: dict[str, Any]) -> dict[str, Any]:
+        """It costs next to nothing, and has a single amplitude."""
+        search = content.get("search", {})
+        if content.get("model") != "linear" or not isinstance(search, Mapping):
+            return content
+        return {"error": "linear", **content, "search": {"generations": 300, "points": 1000, **search}}
+
+    @model_validator(mode="after")
+    def _fit_together(self) -> Settings:
+        if self.model == "linear":
+            for name in self.free:
+                if name not in LINEAR_PARAMETERS:
+                    raise ValueError(f"free.{name}: the linear model has only {', '.join(LINEAR_PARAMETERS)}")
+            if self.static:
+                raise ValueError("static: the linear model has no static test")
+        for name, tie in self.tied.items():
+            if name in self.free:
+                raise ValueError(f"tied.{name}: is free, too")
+            if tie.to in self.tied:
+                raise ValueError(f"tied.{name}: {tie.to} is itself tied")
+        return self
+
+    @property
+    def sources(self) -> list[Source]:
+        """The measurements as the bench reads them."""
+        return [Source(**dict(measurement)) for measurement in self.measurement]
 
     def parameters(self, x) -> dict[str, Value]:
         """All given parameters of the FMU at the optimiser's x (n,)."""
-        values = {**self.fixed, **{free.name: free.value(float(at)) for free, at in zip(self.free, x)}}
-        return {**values, **{name: factor * values[to] for name, (to, factor) in self.tied.items()}}
+        values = {**self.fixed, **{name: free.value(float(at)) for (name, free), at in zip(self.free.items(), x)}}
+        return {**values, **{name: tie.factor * values[tie.to] for name, tie in self.tied.items()}}
 
 
 def read_settings(
@@ -105,137 +162,45 @@ def read_settings(
 
     Raises ZSpringError with file and key for anything unknown, missing or out of range.
     """
-    text, table = read_toml(path)
-    try:
-        return _settings(path, text, table, fmu, parameter_set, assignments)
-    except ZSpringError as error:
-        raise ZSpringError(f"{path}: {error}") from None
+    with settings_of(path, Settings) as settings:
+        for name, free in settings.free.items():
+            _check_free(fmu.variables, name, free)
+        for name, tie in settings.tied.items():
+            for each in (name, tie.to):
+                if fmu.variables.parameter(each).type != "Real":
+                    raise ZSpringError(f"tied.{name}: {each} is no Real parameter")
+        return settings.model_copy(update={"fixed": _fixed(settings, fmu, parameter_set, assignments)})
 
 
-def _settings(
-    path: Path, text: str, table: Table, fmu: Fmu, parameter_set: str | None, assignments: tuple[str, ...]
-) -> Settings:
-    model = table.choice("model", ("linear", "zspring"), None)
-    linear = model == "linear"
-    fixed, given = _fixed(path, table, fmu, parameter_set, assignments, linear)
-    free = tuple(
-        _free(fmu, name, Table(bounds, f"free.{name}"))
-        for name, bounds in flatten(table.table("free"), lambda item: not has_table(item)).items()
-    )
-    if not free:
-        raise ZSpringError("free: needs at least one parameter with start, min and max")
-    names = [parameter.name for parameter in free]
-    if linear and not set(names) <= set(LINEAR_PARAMETERS):
-        other = next(name for name in names if name not in LINEAR_PARAMETERS)
-        raise ZSpringError(f"free.{other}: the linear model has only {', '.join(LINEAR_PARAMETERS)}")
-    tied = _tied(fmu, table, names)
-    for name in given:
-        if name in names or name in tied:
-            raise ZSpringError(f"{name} is {'free' if name in names else 'tied'}, so it cannot be fixed, too")
-    # Values of a set for what is free or tied do not count. A tie may be to a parameter that nobody has set.
-    starts = {v.name: parse(v, v.start) for v in fmu.variables if v.name in fmu.variables.names("parameter")}
-    for to, _ in tied.values():
-        fixed.setdefault(to, starts[to])
-    fixed = {name: value for name, value in fixed.items() if name not in (*names, *tied)}
-
-    sources = []
-    for number, item in enumerate(table.list("measurement"), 1):
-        entry = Table(item, f"measurement {number}")
-        sources.append(
-            Source(
-                path.parent / entry.text("file"),
-                entry.number("amplitude", None, above=0),
-                entry.choice("force", ("specimen", "contact"), "specimen"),
-                entry.number("fixture_mass", 0.0, least=0),
-            )
-        )
-        entry.finish()
-    if not sources:
-        raise ZSpringError("measurement: needs at least one, [[measurement]] with file = ...")
-    static = None
-    if "static" in table.content:
-        entry = Table(table.table("static"), "static")
-        if linear:
-            raise ZSpringError("static: the linear model has no static test")
-        static = Static(
-            path.parent / entry.text("file"),
-            entry.number("speed", Static.speed, above=0),
-            entry.number("weight", Static.weight, above=0),
-        )
-        entry.finish()
-    entry = Table(table.table("search"), "search")
-    search = Search(
-        entry.integer("generations", 300 if linear else 12, 0),
-        entry.integer("population", Search.population, 1),
-        entry.integer("points", 1000 if linear else Search.points, 1),
-        entry.integer("seed", Search.seed, 0),
-    )
-    entry.finish()
-    settings = Settings(
-        path,
-        model,
-        tuple(sources),
-        free,
-        fixed,
-        tied,
-        search,
-        table.band("band"),
-        table.choice("error", ("log", "linear"), "linear" if linear else "log"),
-        table.choice("quantity", ("receptance", "stiffness"), "receptance"),
-        table.choice("direction", ("up", "down", "rest"), "up"),
-        static,
-        text,
-    )
-    table.finish()
-    return settings
-
-
-def _fixed(
-    path: Path, table: Table, fmu: Fmu, parameter_set: str | None, assignments: tuple[str, ...], linear: bool
-) -> tuple[dict[str, Value], dict[str, Value]]:
-    """Parameters given by set, file and command line, the last before the first; and those not of the set."""
-    own_set = table.text("parameters", "")
-    chosen = parameter_set or own_set
-    if own_set and not parameter_set and own_set not in packaged_sets():
-        chosen = str(path.parent / own_set)
-    values = read_set(find_set(chosen), fmu) if chosen else {}
-    lines = [f"{name}={value}" for name, value in flatten(table.table("fixed"), is_plain).items()]
-    given = fmu.variables.parse_assignments([*lines, *assignments], but_not=BENCH_PARAMETERS)
-    suspension = fmu.variables.parse_assignments([f"suspension={'Linear' if linear else 'ZSpring'}"])
-    values = {name: value for name, value in values.items() if name not in BENCH_PARAMETERS}
-    step = {} if linear else {"solver.step": ACCURATE_STEP}
-    return {**step, **values, **given, **suspension}, given
-
-
-def _free(fmu: Fmu, name: str, bounds: Table) -> Free:
-    if fmu.variables.parameter(name).type != "Real" or name in BENCH_PARAMETERS:
+def _check_free(variables: Variables, name: str, free: Free) -> None:
+    """Raises ZSpringError if it is no parameter to identify, or if its bounds are not those of the FMU or within."""
+    variable = variables.parameter(name)
+    if variable.type != "Real" or name in BENCH_PARAMETERS:
         raise ZSpringError(f"free.{name}: must be a Real parameter of the pantograph")
-    start, low, high = (bounds.number(key) for key in ("start", "min", "max"))
-    bounds.finish()
-    if not low < high:
-        raise ZSpringError(f"free.{name}: min = {low:g} must be below max = {high:g}")
-    if not low <= start <= high:
-        raise ZSpringError(f"free.{name}: start = {start:g} must lie in {low:g} .. {high:g}")
-    for key, bound, limit in (("min", low, "min"), ("max", high, "max")):
-        allowed = getattr(fmu.variables[name], limit)
-        if allowed is not None and (bound - float(allowed)) * (1 if key == "min" else -1) < 0:
-            raise ZSpringError(f"free.{name}: {key} = {bound:g}: the FMU allows {limit} {allowed}")
-    return Free(name, start, low, high)
+    if variable.min is not None and free.minimum < float(variable.min):
+        raise ZSpringError(f"free.{name}: min = {free.minimum:g}: the FMU allows min {variable.min}")
+    if variable.max is not None and free.maximum > float(variable.max):
+        raise ZSpringError(f"free.{name}: max = {free.maximum:g}: the FMU allows max {variable.max}")
 
 
-def _tied(fmu: Fmu, table: Table, free: list[str]) -> dict[str, tuple[str, float]]:
-    tied = {}
-    for name, value in flatten(table.table("tied"), lambda item: "to" in item or is_plain(item)).items():
-        entry = Table(value if isinstance(value, Mapping) else {"to": value}, f"tied.{name}")
-        to, factor = entry.text("to"), entry.number("factor", 1.0)
-        entry.finish()
-        for each in (name, to):
-            if fmu.variables.parameter(each).type != "Real":
-                raise ZSpringError(f"tied.{name}: {each} is no Real parameter")
-        if name in free:
-            raise ZSpringError(f"tied.{name}: is free, too")
-        tied[name] = (to, factor)
-    for name, (to, _) in tied.items():
-        if to in tied:
-            raise ZSpringError(f"tied.{name}: {to} is itself tied")
-    return tied
+def _fixed(settings: Settings, fmu: Fmu, parameter_set: str | None, assignments: tuple[str, ...]) -> dict[str, Value]:
+    """Parameters given by set, file and command line, the last before the first, and what is tied to."""
+    chosen = parameter_set or settings.parameter_set
+    values = read_set(find_set(chosen), fmu) if chosen else {}
+    lines = [f"{name}={value}" for name, value in settings.fixed.items()]
+    given = fmu.variables.parse_assignments([*lines, *assignments], but_not=BENCH_PARAMETERS)
+    for name in given:
+        for kind, others in (("free", settings.free), ("tied", settings.tied)):
+            if name in others:
+                raise ZSpringError(f"{name} is {kind}, so it cannot be fixed, too")
+    linear = settings.model == "linear"
+    fixed = {
+        **({} if linear else {"solver.step": ACCURATE_STEP}),
+        **{name: value for name, value in values.items() if name not in BENCH_PARAMETERS},
+        **given,
+        **fmu.variables.parse_assignments([f"suspension={'Linear' if linear else 'ZSpring'}"]),
+    }
+    for tie in settings.tied.values():  # may be to a parameter that nobody has set
+        fixed.setdefault(tie.to, parse(fmu.variables[tie.to], fmu.variables[tie.to].start))
+    # Values of a set for what is free or tied do not count.
+    return {name: value for name, value in fixed.items() if name not in {**settings.free, **settings.tied}}

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ZSpringError, missing_extra
-from ..tables import finite_number, read_head, read_rows, write_head
+from ..tables import read_table, write_table
 from .series import Series
 
 _SUPPORT = re.compile(r"support uplift at (\S+) m")
@@ -75,13 +75,11 @@ def write_result(result: LineResult, path: Path) -> None:
     """Write a .csv or a .parquet file. Raises ZSpringError where pyarrow is missing for the latter."""
     head = {**result.settings, "elapsed": f"{result.elapsed:.3g} s"}
     table = columns(result)
-    path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".parquet":
+        path.parent.mkdir(parents=True, exist_ok=True)
         _write_parquet(path, head, table)
-        return
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        write_head(file, head, list(table))
-        np.savetxt(file, np.column_stack(list(table.values())), fmt="%.10g", delimiter=",")
+    else:
+        write_table(path, head, list(table), zip(*table.values()), digits=10)
 
 
 def read_result(path: Path) -> LineResult:
@@ -113,9 +111,8 @@ def read_result(path: Path) -> LineResult:
 
 
 def _read_csv(path: Path) -> tuple[dict[str, str], dict[str, np.ndarray]]:
-    names, rows = read_rows(path)
-    numbers = [[finite_number(path, line, name, cell) for name, cell in zip(names, row)] for line, row in rows]
-    return read_head(path), dict(zip(names, np.array(numbers).reshape(-1, len(names)).T))
+    table = read_table(path)
+    return dict(table.head), {column.label: table.numbers(name) for name, column in table.columns.items()}
 
 
 def _arrow():

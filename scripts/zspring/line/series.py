@@ -1,14 +1,14 @@
 """A contact force along a line, from one of our runs or from a user's CSV of any simulator or line test.
 
-A CSV file has a line of column names with units, in any order, and may begin with lines of comment (#):
+The file is a table as `tables.py` reads it, with the columns, in any order:
 
-    contact force [N]           also kN
-    time [s]                    also ms; may be missing where there are positions and a speed
-    position [m]                also km; of the pantograph along the line, may be missing where there is a time
-    wire height [m]             of the contact point, also mm or cm; optional
-    support uplift ... [mm]     one column for each support, also m or cm; optional
+    contact force [N]
+    time [s]                    may be missing where there are positions and a speed
+    position [m]                of the pantograph along the line, may be missing where there is a time
+    wire height [m]             of the contact point; optional
+    support uplift ... [mm]     one column for each support; optional
 
-An underscore counts as a blank, and a number ("contact force 1 [N]") as that of the pantograph: the files that
+or other units of these kinds. A number ("contact force 1 [N]") counts as that of the pantograph: the files that
 `zspring couple` and `zspring en50318` write have this form. Other columns are not read. Samples must be even
 in time; blank cells are gaps, which are refused and not bridged.
 """
@@ -23,18 +23,13 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ZSpringError
-from ..tables import finite_number, read_rows, split_label
+from ..tables import read_table
 
 ROUNDING = 1e-6  # of rate and duration, as times come from files
 UNEVEN = 0.02  # largest relative deviation of a time step: files round their times
 LEAST_RATE = 100.0  # Hz, five samples in a period of 20 Hz
 LEAST_PERIODS = 20  # of 20 Hz in a series, 5 of 5 Hz
 BAND = 20.0  # Hz, upper end of the standard's frequency range
-
-_TIME = {"s": 1.0, "ms": 1e-3}
-_LENGTH = {"m": 1.0, "mm": 1e-3, "cm": 1e-2}
-_POSITION = {"m": 1.0, "km": 1e3}
-_FORCE = {"N": 1.0, "kN": 1e3}
 
 
 @dataclass(frozen=True)
@@ -101,53 +96,29 @@ def read_series(path: Path, speed: float | None = None, pantograph: int = 1) -> 
     Raises ZSpringError with file, line and column for a missing or doubled column, a missing or unknown unit,
     and a value that is no finite number; and what Series.check raises.
     """
-    labels, rows = read_rows(path)
-    columns: dict[str, tuple[int, str | None]] = {}
-    for index, label in enumerate(labels):
-        name, unit = split_label(label)
-        name = _canonical(name, pantograph)
-        if name in columns:
-            raise ZSpringError(f"{path}: two columns {name!r}")
-        columns[name] = (index, unit)
-    if not rows:
+    table = read_table(path, {f"{name} {pantograph}": name for name in ("contact force", "position", "wire height")})
+    if not table.lines:
         raise ZSpringError(f"{path}: no row of values")
-
-    def column(name: str, factors: Mapping[str, float]) -> np.ndarray:
-        index, unit = columns[name]
-        if unit not in factors:
-            given = "has no unit" if unit is None else f"unit [{unit}]"
-            raise ZSpringError(f"{path}, column {name!r}: {given}: must be {' or '.join(f'[{u}]' for u in factors)}")
-        numbers = [finite_number(path, line, name, row[index]) for line, row in rows]
-        return factors[unit] * np.array(numbers)
-
-    if "contact force" not in columns:
-        raise ZSpringError(f"{path}: no column 'contact force [N]' (there are: {', '.join(labels)})")
-    force = column("contact force", _FORCE)
-    position = column("position", _POSITION) if "position" in columns else None
-    if "time" in columns:
-        time = column("time", _TIME)
+    labels = ", ".join(column.label for column in table.columns.values())
+    if "contact force" not in table:
+        raise ZSpringError(f"{path}: no column 'contact force [N]' (there are: {labels})")
+    force = table.numbers("contact force", "N")
+    position = table.numbers("position", "m") if "position" in table else None
+    if "time" in table:
+        time = table.numbers("time", "s")
         if position is None and speed:
             position = speed * (time - time[0])
     elif position is None:
-        raise ZSpringError(f"{path}: no column 'time [s]' or 'position [m]' (there are: {', '.join(labels)})")
+        raise ZSpringError(f"{path}: no column 'time [s]' or 'position [m]' (there are: {labels})")
     elif not speed:
         raise ZSpringError(f"{path}: no column 'time [s]': the positions need the speed, --speed")
     else:
         time = (position - position[0]) / speed
-    height = column("wire height", _LENGTH) if "wire height" in columns else None
+    height = table.numbers("wire height", "m") if "wire height" in table else None
     uplift = {
-        name.removeprefix("support uplift").strip() or "support": column(name, _LENGTH)
-        for name in columns
+        name.removeprefix("support uplift").strip() or "support": table.numbers(name, "m")
+        for name in table.columns
         if name.startswith("support uplift")
     }
     places = {name: float(found[1]) for name in uplift if (found := re.fullmatch(r"at (\S+) m", name))}
     return Series(str(path), time, force, position, height, uplift, places).check()
-
-
-def _canonical(name: str, pantograph: int) -> str:
-    """Name of a column without underscores and without the pantograph's number, if it is this one."""
-    name = " ".join(name.replace("_", " ").lower().split())
-    for known in ("contact force", "position", "wire height"):
-        if name == f"{known} {pantograph}":
-            return known
-    return name

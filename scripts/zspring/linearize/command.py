@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from ..options import Numbers, chosen_parameters, fmu_option, opened, output_option, parameters_option, set_option
+from ..records import claimed
 
 
 @click.command()
@@ -31,7 +32,7 @@ def linearize(frequencies, parameter_set, assignments, output, fmu_path) -> None
     unit, eigenvalues s (1/s), eigenvectors (columns; one of each conjugate pair), natural_frequencies and
     head_held_frequencies (undamped, Hz), and the receptance -Z/F at the head (m/N) over frequency (Hz).
     """
-    with opened(fmu_path) as fmu:
+    with opened(fmu_path) as fmu, claimed(output):
         parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=("suspension",))
         import numpy as np
 

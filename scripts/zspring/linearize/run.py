@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from scipy.io import savemat
 
-from ..files import used_parameters
 from ..fmu import Fmu
 from ..receptance import MODELS, LinearModel, linear_model
 from ..variables import Value
@@ -27,7 +26,7 @@ def run_linearize(fmu: Fmu, parameters: Mapping[str, Value], frequency: np.ndarr
 
     frequency   (n,) in Hz, > 0, of the receptance in the files
     """
-    used = used_parameters(fmu, parameters)
+    used = fmu.used_parameters(parameters)
     folder.mkdir(parents=True, exist_ok=True)
     synthetic = fmu.variables.synthetic(used)
     written = []

@@ -14,6 +14,7 @@ from ..options import (
     parameters_option,
     set_option,
 )
+from ..records import claimed
 
 
 @click.command()
@@ -41,7 +42,7 @@ def mechanism(frequency, accelerations, parameter_set, assignments, output, suff
 
     Writes mechanism.csv, the figure, and mechanism.html, an animation that any browser opens without network.
     """
-    with opened(fmu_path) as fmu:
+    with opened(fmu_path) as fmu, claimed(output):
         parameters = chosen_parameters(
             fmu, parameter_set, assignments, but_not=("drive", "bench.frequency", "bench.acceleration")
         )

@@ -11,8 +11,9 @@ import numpy as np
 from ..bench.measure import FrfSettings
 from ..errors import ZSpringError
 from ..figures import save
-from ..files import study_head, synthetic_note, used_parameters, write_table
 from ..fmu import Fmu
+from ..heads import file_head, synthetic_note
+from ..tables import write_table
 from ..variables import Value, text
 from .animation import animation_html
 from .cycle import Cycle, simulate_cycle
@@ -34,7 +35,7 @@ def run_mechanism(
     Raises ZSpringError for a suspension without rods and for motion beyond the standard figure's stroke,
     FmuError when the FMU refuses a parameter.
     """
-    used = used_parameters(fmu, parameters)
+    used = fmu.used_parameters(parameters)
     suspension = text(fmu.variables["suspension"], used["suspension"])
     if suspension == "Linear":
         raise ZSpringError("suspension = Linear: has no linkage to draw")
@@ -47,7 +48,7 @@ def run_mechanism(
     magnifications = [magnification(cycle) for cycle in cycles]
     table, figure, page = (folder / f"mechanism.{kind}" for kind in ("csv", suffix, "html"))
     listed = {name: value for name, value in used.items() if not name.startswith(("bench.", "drive"))}
-    write_table(table, study_head(fmu, listed, {}), _COLUMNS, (row for cycle in cycles for row in _rows(cycle)))
+    write_table(table, file_head(fmu, listed), _COLUMNS, (row for cycle in cycles for row in _rows(cycle)))
     title = f"Linkage of the head suspension, seen from the upper frame{synthetic_note(fmu, used)}"
     save(mechanism_figure(cycles, magnifications, title), figure)
     about = f"A steady cycle at {frequency:g} Hz, simulated{synthetic_note(fmu, used)}."

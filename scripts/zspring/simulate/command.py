@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from ..options import chosen_parameters, fmu_option, format_option, opened, output_option, parameters_option, set_option
+from ..records import claimed
 from .inputs import read_inputs
 
 
@@ -52,7 +53,7 @@ def simulate(
     """
     from .run import simulate as run_simulation  # matplotlib is slow to load
 
-    with opened(fmu_path) as fmu:
+    with opened(fmu_path) as fmu, claimed(output):
         assignments = [*assignments, *([f"drive={drive}"] if drive else [])]
         parameters = chosen_parameters(fmu, parameter_set, assignments)
         inputs = read_inputs(input_path, fmu.variables) if input_path else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import sys
 from collections.abc import Mapping
@@ -15,9 +14,10 @@ from tqdm import tqdm
 from ..errors import ZSpringError
 from ..figures import save
 from ..fmu import Fmu, Instance
+from ..heads import file_head, synthetic_note
 from ..interrupt import Interrupted, stop_on_interrupt
-from ..tables import write_head
-from ..variables import Value, text, with_unit
+from ..tables import TableFile
+from ..variables import Value, text
 from .inputs import interpolate
 from .plot import simulation_figure
 
@@ -60,34 +60,31 @@ def simulate(
     # The last step is shorter where the duration is no multiple of the step.
     count = int(np.ceil((stop_time - start_time) / step * (1 - 1e-12)))
     times = np.append(start_time + step * np.arange(count), stop_time)
-    names, outputs = fmu.variables.names("parameter", "calculatedParameter"), fmu.variables.names("output")
+    outputs = fmu.variables.names("output")
     path, rows = folder / "simulation.csv", []
     with fmu.instances() as (instance,), ExitStack() as stack:
         feed = _Feed(instance, inputs, times, interpolation)
         instance.start(parameters, feed.values(0), start_time)
-        used = dict(zip(names, instance.get(names)))
+        used = instance.used_parameters()
         drive = text(fmu.variables["drive"], used["drive"])
         for name in set(DRIVEN_BY.values()) & set(inputs[1] if inputs else ()) - {DRIVEN_BY[drive]}:
             print(f"{name}: has no effect with drive {drive}; see --drive", file=sys.stderr)
-        folder.mkdir(parents=True, exist_ok=True)
-        file = stack.enter_context(open(path, "w", encoding="utf-8", newline=""))
+        table = TableFile(path, ["time [s]", *(_label(fmu, name) for name in outputs)], digits=12)
+        table.begin(file_head(fmu, used))
+        stack.enter_context(table)
         stop = stack.enter_context(stop_on_interrupt())
-        write_head(file, _head(fmu, used), ["time [s]", *(_label(fmu, name) for name in outputs)])
-        writer = csv.writer(file, lineterminator="\n")
         for i in tqdm(range(count + 1), unit=" steps", disable=None):
             if i > 0:
                 feed.hand_over(i - 1)
                 instance.step(times[i - 1], times[i] - times[i - 1])
             rows.append([float(times[i]), *instance.get(outputs)])
-            writer.writerow(f"{value:.12g}" for value in rows[-1])
+            table.write(rows[-1])
             if stop.is_set():
                 raise Interrupted(
                     f"interrupted at {times[i]:g} s; the rows so far are kept in {path}; the same command begins anew"
                 )
 
-    title = f"Pantograph, drive {drive}"
-    if fmu.variables.synthetic(used):
-        title += "; Z-spring parameters synthetic"
+    title = f"Pantograph, drive {drive}{synthetic_note(fmu, used)}"
     columns = dict(zip(["time", *outputs], np.array(rows, dtype=float).T))
     figure_path = folder / f"simulation.{suffix}"
     save(simulation_figure(columns, used["zspring.Mf"], title), figure_path)
@@ -112,15 +109,6 @@ class _Feed:
         """Set the inputs for the step that begins at communication point i."""
         self._instance.set(self.values(i))
         self._instance.set_slopes({name: float(slopes[i]) for name, slopes in self._slopes.items()})
-
-
-def _head(fmu: Fmu, parameters: Mapping[str, Value]) -> dict[str, str]:
-    """FMU and parameters, calculated ones included, for the head of the file."""
-    return {
-        **fmu.identity,
-        "synthetic": " ".join(fmu.variables.synthetic(parameters)),
-        **{name: with_unit(fmu.variables[name], value) for name, value in parameters.items()},
-    }
 
 
 def _label(fmu: Fmu, name: str) -> str:

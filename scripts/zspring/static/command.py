@@ -15,6 +15,7 @@ from ..options import (
     parameters_option,
     set_option,
 )
+from ..records import claimed
 
 
 @click.command()
@@ -51,7 +52,7 @@ def static(amplitudes, rates, parameter_set, assignments, output, suffix, fmu_pa
 
     Writes stiffness.csv, loops.csv and static.png. After Ctrl-C the loops so far are kept.
     """
-    with opened(fmu_path) as fmu:
+    with opened(fmu_path) as fmu, claimed(output):
         parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=SET_HERE)
         from .run import run_static
 

@@ -10,9 +10,10 @@ from tqdm import tqdm
 from ..bench.loops import CLAMP, Loop, measure_loop
 from ..errors import ZSpringError
 from ..figures import save
-from ..files import study_head, synthetic_note, used_parameters, write_table
 from ..fmu import Fmu
+from ..heads import file_head, synthetic_note
 from ..interrupt import Interrupted, stop_on_interrupt
+from ..tables import write_table
 from ..variables import Value, text
 from .plot import LAW_STYLES, static_figure
 
@@ -30,7 +31,7 @@ def run_static(
     Raises ZSpringError for a suspension without friction, FmuError when the FMU refuses a parameter,
     Interrupted after Ctrl-C (the loops so far are kept).
     """
-    used = used_parameters(fmu, parameters)
+    used = fmu.used_parameters(parameters)
     suspension = text(fmu.variables["suspension"], used["suspension"])
     if suspension != "ZSpring":
         raise ZSpringError(f"suspension = {suspension}: must be ZSpring, the others have no friction")
@@ -56,7 +57,7 @@ def _write(fmu: Fmu, used: Mapping[str, Value], loops: Sequence[Loop], folder: P
     listed = {
         name: value for name, value in used.items() if name not in ("drive", "friction", "k2", "k3", "solver.step")
     }
-    head = study_head(fmu, listed, own)
+    head = file_head(fmu, listed, own)
     stiffness, curves = folder / "stiffness.csv", folder / "loops.csv"
     key = ["friction", "rate [m/s]", "amplitude [m]"]
     write_table(

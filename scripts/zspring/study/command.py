@@ -10,6 +10,7 @@ import click
 
 from ..errors import missing_extra
 from ..options import fmu_option, format_option, opened, output_option
+from ..records import claimed
 
 NEEDED = ("distributed", "SALib", "pyarrow")
 
@@ -66,14 +67,6 @@ def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path) 
         raise missing_extra(absent, "study")
     from .run import run_study
 
-    with opened(fmu_path) as fmu:
-        run_study(
-            fmu,
-            file,
-            output or Path("results") / f"study-{file.stem}",
-            scheduler,
-            workers or os.cpu_count() or 1,
-            timeout,
-            suffix,
-            parquet,
-        )
+    folder = output or Path("results") / f"study-{file.stem}"
+    with opened(fmu_path) as fmu, claimed(folder):
+        run_study(fmu, file, folder, scheduler, workers or os.cpu_count() or 1, timeout, suffix, parquet)

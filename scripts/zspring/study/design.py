@@ -9,9 +9,7 @@ import numpy as np
 
 from ..errors import ZSpringError
 from ..variables import Value
-from .settings import StudySettings
-
-MOST_CASES = 1_000_000
+from .settings import MOST_CASES, StudySettings
 
 Case = dict[str, Value]  # values of the parameters that vary
 

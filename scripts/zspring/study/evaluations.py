@@ -14,7 +14,7 @@ from ..bench.loops import measure_loop
 from ..bench.measure import FAILED, NOT_SETTLED, FrfSettings, run_sweep, sweeps
 from ..bench.resonances import extremes
 from ..fmu import Instance
-from ..variables import Value, parse, text
+from ..variables import Value, exact, parse, text
 
 NOT_SETTLED_COLUMN = "not settled"
 
@@ -36,7 +36,7 @@ class FrfQuantity:
         """Columns of the numbers that sum an FRF up."""
         names = []
         for amplitude in dict.fromkeys(amplitude for amplitude, _ in self.points):
-            names += [f"resonance {short(amplitude)} m/s2 [Hz]", f"peak {short(amplitude)} m/s2 [m/N]"]
+            names += [f"resonance {exact(amplitude)} m/s2 [Hz]", f"peak {exact(amplitude)} m/s2 [m/N]"]
         return names
 
     @property
@@ -46,17 +46,8 @@ class FrfQuantity:
 
     def described(self) -> dict[str, str]:
         """Settings as text, by key."""
-        s = self.settings
-        return {
-            "frf H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
-            "frf amplitudes": " ".join(map(short, s.amplitudes)) + " m/s2",
-            "frf frequencies": " ".join(map(short, s.frequencies)) + " Hz",
-            "frf direction": s.direction,
-            "frf tolerance": repr(s.tolerance),
-            "frf periods": f"{s.min_periods} to {s.max_periods}",
-            "frf stroke": f"{s.stroke!r} m",
-            "frf resonance band": f"{short(self.band[0])} to {short(self.band[1])} Hz",
-        }
+        frf = {f"frf {key}": value for key, value in self.settings.described().items() if key != "through"}
+        return {**frf, "frf resonance band": f"{exact(self.band[0])} to {exact(self.band[1])} Hz"}
 
     def measure(self, instance: Instance, parameters: Mapping[str, Value]) -> tuple[dict[str, float], list[str]]:
         """Values by column, and a line for each point that could not be solved."""
@@ -81,7 +72,7 @@ class FrfQuantity:
         curve = sorted((f, H) for (a, f), H in found.items() if a == amplitude and low <= f <= high and not np.isnan(H))
         maxima = extremes(*map(np.array, zip(*curve)))[0] if len(curve) > 2 else []
         frequency, peak = max(maxima, key=lambda extreme: extreme[1], default=(math.nan, math.nan))
-        return {f"resonance {short(amplitude)} m/s2 [Hz]": frequency, f"peak {short(amplitude)} m/s2 [m/N]": peak}
+        return {f"resonance {exact(amplitude)} m/s2 [Hz]": frequency, f"peak {exact(amplitude)} m/s2 [m/N]": peak}
 
 
 @dataclass(frozen=True)
@@ -99,7 +90,7 @@ class StaticQuantity:
     def scalars(self) -> list[str]:
         """Columns of stiffness and loss."""
         return [
-            f"static {name} {short(amplitude)} m [{unit}]"
+            f"static {name} {exact(amplitude)} m [{unit}]"
             for amplitude in self.amplitudes
             for name, unit in (("stiffness", "N/m"), ("loss", "J"))
         ]
@@ -111,8 +102,8 @@ class StaticQuantity:
     def described(self) -> dict[str, str]:
         """Settings as text, by key."""
         return {
-            "static amplitudes": " ".join(map(short, self.amplitudes)) + " m",
-            "static rate": f"{short(self.rate)} m/s",
+            "static amplitudes": " ".join(map(exact, self.amplitudes)) + " m",
+            "static rate": f"{exact(self.rate)} m/s",
         }
 
     def measure(self, instance: Instance, parameters: Mapping[str, Value]) -> tuple[dict[str, float], list[str]]:
@@ -131,9 +122,4 @@ Quantity = FrfQuantity | StaticQuantity
 
 def column(part: str, amplitude: float, frequency: float) -> str:
     """Name of the column of "H_re" or "H_im" at an amplitude (m/s2) and a frequency (Hz)."""
-    return f"{part} {short(amplitude)} m/s2 {short(frequency)} Hz [m/N]"
-
-
-def short(number: float) -> str:
-    """Shortest exact text."""
-    return repr(float(number)).removesuffix(".0")
+    return f"{part} {exact(amplitude)} m/s2 {exact(frequency)} Hz [m/N]"

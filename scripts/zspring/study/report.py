@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..tables import write_head
+from ..tables import write_table
 from .design import unit_problem
 from .evaluations import FrfQuantity, column
-from .record import STATUS
+from .files import STATUS
 from .settings import StudySettings
 from .workers import OK
 
@@ -117,17 +116,15 @@ def sobol_table(settings: StudySettings, found: Sequence[SobolIndices]) -> list[
 
 def write_sobol(path: Path, head: Mapping[str, str], settings: StudySettings, found: Sequence[SobolIndices]) -> None:
     """Indices and confidence intervals as CSV, one row for each result and parameter."""
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        write_head(
-            file,
-            {**head, "confidence": "half width of the 95 % interval"},
-            ["result", "parameter", "first order", "confidence", "total order", "confidence of total"],
+    rows = [
+        [indices.column, name, *numbers]
+        for indices in found
+        for name, *numbers in zip(
+            settings.vary, indices.first, indices.first_confidence, indices.total, indices.total_confidence
         )
-        writer = csv.writer(file, lineterminator="\n")
-        for indices in found:
-            numbers = zip(indices.first, indices.first_confidence, indices.total, indices.total_confidence)
-            for name, row in zip(settings.vary, numbers):
-                writer.writerow([indices.column, name, *(f"{number:.6g}" for number in row)])
+    ]
+    columns = ["result", "parameter", "first order", "confidence", "total order", "confidence of total"]
+    write_table(path, {**head, "confidence": "half width of the 95 % interval"}, columns, rows, digits=6)
 
 
 def write_parquet(

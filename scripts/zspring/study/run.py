@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import sys
+import threading
 import time
-from datetime import datetime, timezone
+from collections.abc import Iterator
 from pathlib import Path
 
-from tqdm import tqdm
-
-from ..errors import ZSpringError
+from ..errors import ZSpringError, tell
 from ..figures import save
 from ..fmu import Fmu, FmuError
-from ..interrupt import Interrupted, stop_on_interrupt
-from ..variables import Value, text, with_unit
+from ..heads import file_head, now, synthetic_note
+from ..records import fill
+from ..variables import Value, text
 from . import report
 from .connection import connected
 from .design import Case, make_cases
 from .evaluations import FrfQuantity
+from .files import STATUS, Row, StudyRecord
 from .plot import envelope_figure, sobol_figure
-from .record import STATUS, StudyRecord
 from .settings import StudySettings, read_study
-
-MOST_FAILED_LINES = 10
 
 
 def run_study(
@@ -57,10 +54,7 @@ def run_study(
     lines = _write_results(fmu, settings, record, parameters, suffix, parquet)
     print(speed, *lines, sep="\n")
     lost, failed = record.missing, record.failed
-    for number, reason in failed[:MOST_FAILED_LINES]:
-        print(f"case {number}: {reason}", file=sys.stderr)
-    if len(failed) > MOST_FAILED_LINES:
-        print(f"and {len(failed) - MOST_FAILED_LINES} more, see {record.path}", file=sys.stderr)
+    tell([f"case {number}: {reason}" for number, reason in failed], record.path)
     if lost:
         raise ZSpringError(f"{len(lost)} cases were lost with their workers; the same command runs them again")
     if len(failed) == len(cases):
@@ -78,31 +72,21 @@ def _measure(
     timeout: float,
 ) -> str:
     """Run the missing cases; a line on the time it took."""
-    total, done = len(cases), len(cases) - len(missing)
-    if done:
-        print(f"going on after {done} of {total} cases in {record.path}")
-    kept = f"kept in {record.path}; the same command goes on from there"
-    busy, begin = 0.0, time.perf_counter()
-    with stop_on_interrupt() as stop:
-        try:
-            with (
-                connected(scheduler, min(workers, len(missing)), timeout) as cluster,
-                cluster.study(fmu, settings) as study,
-                record,
-                tqdm(total=total, initial=done, unit=" cases", disable=None) as bar,
-            ):
-                threads, begin = cluster.threads, time.perf_counter()
-                for number, result in cluster.run(study, {n: cases[n] for n in missing}, stop):
-                    record.append(number, result)
-                    busy += result.get("seconds", 0.0)
-                    bar.update()
-                seconds = time.perf_counter() - begin
-        except ZSpringError as error:
-            if not record.rows:
-                raise
-            raise ZSpringError(f"{error}; {len(record.rows)} of {total} cases {kept}") from None
-    if stop.is_set():
-        raise Interrupted(f"interrupted after {total - len(record.missing)} of {total} cases, {kept}")
+    threads, busy, seconds = 0, 0.0, 0.0
+
+    def work(stop: threading.Event) -> Iterator[Row]:
+        nonlocal threads, busy, seconds
+        with (
+            connected(scheduler, min(workers, len(missing)), timeout) as cluster,
+            cluster.study(fmu, settings) as study,
+        ):
+            threads, begin = cluster.threads, time.perf_counter()
+            for number, result in cluster.run(study, {n: cases[n] for n in missing}, stop):
+                busy += result.get("seconds", 0.0)
+                yield record.row(number, result)
+            seconds = time.perf_counter() - begin
+
+    fill(record, len(cases), len(missing), "cases", work)
     return (
         f"{len(missing)} cases in {seconds:.1f} s on {threads} worker threads, "
         f"{len(missing) / seconds:.1f} cases/s; workers busy {100 * busy / (threads * seconds):.0f} %"
@@ -115,9 +99,8 @@ def _write_results(
     """Write figures and tables of all results; the lines to print about them."""
     folder, rows, written = record.path.parent, record.rows, [record.path]
     scalars = [name for quantity in settings.quantities for name in quantity.scalars]
-    title = f"Parameter study, {settings.design}, of {', '.join(settings.vary)}"
-    if fmu.variables.synthetic(parameters):
-        title += "; Z-spring parameters synthetic"
+    note = synthetic_note(fmu, parameters)
+    title = f"Parameter study, {settings.design}, of {', '.join(settings.vary)}{note}"
     lines = report.spread_table(scalars, rows)
     for quantity in settings.quantities:
         if isinstance(quantity, FrfQuantity):
@@ -156,24 +139,10 @@ def _all_parameters(fmu: Fmu, settings: StudySettings, cases: list[Case]) -> dic
 
 
 def _head(fmu: Fmu, settings: StudySettings, parameters: dict[str, Value], cases: int) -> dict[str, str]:
-    """Everything that defines the numbers of the study, and the date (UTC)."""
-    return {
-        "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        **fmu.identity,
-        "SHA-256 of the FMU": fmu.sha256,
-        "cases": str(cases),
-        **settings.described(fmu.variables),
-        "synthetic": " ".join(fmu.variables.synthetic(_unvaried(settings, parameters))),
-        **{
-            name: with_unit(fmu.variables[name], value)
-            for name, value in _unvaried(settings, parameters).items()
-            if name != "drive"
-        },
-    }
-
-
-def _unvaried(settings: StudySettings, parameters: dict[str, Value]) -> dict[str, Value]:
-    return {name: value for name, value in parameters.items() if name not in settings.vary}
+    """Everything that defines the numbers of the study, and the date."""
+    own = {"date": now(), "SHA-256 of the FMU": fmu.sha256, "cases": str(cases), **settings.described(fmu.variables)}
+    unvaried = {name: value for name, value in parameters.items() if name not in settings.vary}
+    return file_head(fmu, unvaried, own, but_not=("drive",))
 
 
 def _texts(fmu: Fmu, case: Case) -> dict[str, str]:

@@ -10,7 +10,7 @@
 
 namespace fuzz {
 
-using zspring::fmi::Causality;
+using zspring::Causality;
 using zspring::fmi::Type;
 using zspring::fmi::Variable;
 using zspring::fmi::variable_count;

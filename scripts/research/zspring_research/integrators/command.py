@@ -14,6 +14,7 @@ from zspring.options import (
     parameters_option,
     set_option,
 )
+from zspring.records import claimed
 
 POSITIVE = click.FloatRange(min=0, min_open=True)
 
@@ -61,6 +62,6 @@ def integrators(
         if package not in ("numba", "CyRK"):
             raise
         raise missing_extra([package], "research") from None
-    with opened(fmu_path) as fmu:
+    with opened(fmu_path) as fmu, claimed(output):
         parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=SET_BY_THE_STUDY)
         run_integrators(fmu, parameters, frequency, acceleration, periods, rounds, quick, output, suffix)

@@ -79,18 +79,19 @@ COLUMNS = {
 }
 
 
-def to_row(variant: Variant, result: Result) -> dict[str, str]:
-    """The row of a CSV file, by column name."""
-    values = {**asdict(variant), **asdict(result)}
-    return {COLUMNS[name]: value if isinstance(value, str) else repr(value) for name, value in values.items()}
+def to_row(run: tuple[Variant, Result]) -> list[object]:
+    """The cells of a run, in the order of COLUMNS."""
+    values = {**asdict(run[0]), **asdict(run[1])}
+    return [values[name] for name in COLUMNS]
 
 
 def from_row(row: Mapping[str, str]) -> tuple[Variant, Result]:
-    """What `to_row` was given. Raises KeyError or ValueError for another row."""
-    kinds = {"str": str, "int": int, "float": float}
-    return tuple(
-        kind(**{f.name: kinds[f.type](row[COLUMNS[f.name]]) for f in fields(kind)}) for kind in (Variant, Result)
+    """What `to_row` was given, by column name. Raises KeyError or ValueError for another row."""
+    kinds = {"str": str, "int": int, "float": lambda cell: float(cell or "nan")}
+    variant, result = (
+        kind(**{f.name: kinds[str(f.type)](row[COLUMNS[f.name]]) for f in fields(kind)}) for kind in (Variant, Result)
     )
+    return variant, result
 
 
 def variants(parameters: Mapping[str, Value], periods: int, quick: bool) -> list[Variant]:

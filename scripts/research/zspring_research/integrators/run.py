@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+import threading
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-
-from tqdm import tqdm
 
 from zspring.errors import ZSpringError
 from zspring.figures import save
-from zspring.files import study_head, synthetic_note, used_parameters
 from zspring.fmu import Fmu
-from zspring.interrupt import Interrupted, stop_on_interrupt
+from zspring.heads import file_head, synthetic_note
+from zspring.records import Record, fill
+from zspring.tables import write_table
 from zspring.variables import Value, text, with_unit
 
 from . import peers, plot, report
-from .measure import INERTIA_PERIODS, Laboratory, Variant, to_row, variants
+from .measure import COLUMNS, INERTIA_PERIODS, Laboratory, Result, Variant, from_row, to_row, variants
 from .model import bench_model
-from .record import Record, write_runs
 
 STANDARD = 5.0, 1.0  # Hz, m/s2: what the goals are set for
+Run = tuple[Variant, Result]
+
 LONG = 1.0  # s; runs beyond are not repeated
 SET_BY_THE_STUDY = (
     "drive",
@@ -51,7 +52,7 @@ def run_integrators(
     suffix      of the figures, "png" or "svg"
     Raises ZSpringError when the model has no ordinary differential equation, Interrupted after Ctrl-C.
     """
-    parameters = used_parameters(fmu, assigned)
+    parameters = fmu.used_parameters(assigned)
     for name in ("zspring.J1", "zspring.J2", "m3", "zspring.Mf"):
         if not parameters[name] > 0:
             value = with_unit(fmu.variables[name], parameters[name])
@@ -64,21 +65,21 @@ def run_integrators(
         "errors": "relative, over the last period; upper frame and contact force in the root mean square",
     }
     fixed = {name: value for name, value in parameters.items() if name not in SET_BY_THE_STUDY}
-    head = study_head(fmu, fixed, settings)
+    head = file_head(fmu, fixed, settings)
     with fmu.instances() as (instance,):
-        record = Record(folder / "integrators.partial.csv", head)
+        record = Record(folder / "integrators.partial.csv", head, list(COLUMNS.values()), to_row, from_row)
         laboratory = Laboratory(instance, parameters, frequency, acceleration)
         peers.warm_up(bench_model(parameters, frequency, acceleration))
         _measure(laboratory, planned, record, rounds)
         doubt = laboratory.problem(planned[0]).doubt
 
-    best = {variant: record.best(variant) for variant in planned}
+    best = {variant: min(runs, key=lambda run: run.seconds) for variant, runs in runs_of(record, planned).items()}
     precision = {variant: run for variant, run in best.items() if variant.study == "precision"}
     inertia = {variant: run for variant, run in best.items() if variant.study == "inertia"}
     bound = report.stable_step(parameters["zspring.Mf"], parameters["zspring.tau"])
     ratios, force_ratios = (report.inertia_ratios(inertia, quantity, frequency) for quantity in ("H", "force"))
     files = [folder / name for name in ("integrators.csv", f"precision.{suffix}", f"inertia.{suffix}")]
-    write_runs(files[0], head, [to_row(variant, run) for variant, run in best.items()])
+    write_table(files[0], head, record.columns, map(to_row, best.items()), digits=None)
     synthetic = synthetic_note(fmu, parameters)
     bench = f"bench at {frequency:g} Hz and {acceleration:g} m/s²"
     J = text(fmu.variables["zspring.J1"], parameters["zspring.J1"])
@@ -104,26 +105,31 @@ def run_integrators(
     print(*report.failures(best), sep="\n", end="", file=sys.stderr)
 
 
-def _measure(laboratory: Laboratory, planned: list[Variant], record: Record, rounds: int) -> None:
+def runs_of(record: Record[Run], planned: list[Variant]) -> dict[Variant, list[Result]]:
+    """The runs so far of each planned variant."""
+    runs: dict[Variant, list[Result]] = {variant: [] for variant in planned}
+    for variant, result in record.results:
+        if variant in runs:
+            runs[variant].append(result)
+    return runs
+
+
+def _measure(laboratory: Laboratory, planned: list[Variant], record: Record[Run], rounds: int) -> None:
     """All variants in turn, round after round, so that a busy machine hurts all of them alike."""
-    if record.is_stale:
-        print(f"{record.path} does not fit these settings: begun anew")
-    done = sum(min(len(record.runs.get(variant, [])), rounds) for variant in planned)
-    total = rounds * len(planned)
-    if done:
-        print(f"going on after {done} of {total} runs in {record.path}")
-    with stop_on_interrupt() as stop, record, tqdm(total=total, initial=done, unit=" runs", disable=None) as bar:
+    runs = runs_of(record, planned)
+
+    def to_do(number: int, variant: Variant) -> bool:
+        """Whether a variant still needs its run of this number; long ones, and those that failed, have just one."""
+        done = runs[variant]
+        return len(done) <= number and (not done or done[0].seconds < LONG)
+
+    def work(stop: threading.Event) -> Iterator[Run]:
         for number in range(rounds):
             for variant in planned:
-                runs = record.runs.get(variant, [])
-                if len(runs) > number:
-                    continue
-                if not runs or runs[0].seconds < LONG:  # not so where it failed
-                    record.append(variant, laboratory.run(variant))
-                done += 1
-                bar.update()
-                if stop.is_set() and done < total:
-                    raise Interrupted(
-                        f"interrupted after {done} of {total} runs, kept in {record.path}; "
-                        "the same command goes on from there"
-                    )
+                if to_do(number, variant) and not stop.is_set():
+                    runs[variant].append(laboratory.run(variant))
+                    yield variant, runs[variant][-1]
+
+    total = rounds * len(planned)
+    missing = sum(to_do(number, variant) for number in range(rounds) for variant in planned)
+    fill(record, total, missing, "runs", work)

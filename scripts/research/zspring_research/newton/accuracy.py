@@ -11,7 +11,7 @@ from zspring.bench.fixed_work import Point, run_points
 from zspring.fmu import Instance
 from zspring.variables import Value
 
-from .recorded import SETTLING_PERIODS, steps_per_period
+from .recorded import SETTLING_PERIODS
 
 
 @dataclass(frozen=True)
@@ -84,8 +84,7 @@ def contact_force(
     variables = instance.variables
     bench = {"bench.frequency": frequency, "bench.acceleration": acceleration}
     instance.start({**parameters, **bench, **variables.parse_assignments(["drive=Bench"])})
-    (longest,) = instance.get(["solver.step"])
-    count = steps_per_period(frequency, longest)
+    (count,) = instance.get(["bench.steps_per_period"])
     step, begin = 1 / (frequency * count), SETTLING_PERIODS / frequency
     instance.step(0, begin)
     force = []
@@ -103,11 +102,10 @@ def head_position(
     amplitude of the force in N about the static one.
     """
     variables = instance.variables
-    parameters = {**parameters, **variables.parse_assignments(["drive=Force"])}
+    parameters = {**parameters, "bench.frequency": frequency, **variables.parse_assignments(["drive=Force"])}
     instance.start(parameters)
-    static_force, longest = instance.get(["static_force", "solver.step"])
+    static_force, count = instance.get(["static_force", "bench.steps_per_period"])
     instance.start(parameters, {"contact_force": static_force})
-    count = steps_per_period(frequency, longest)
     step = 1 / (frequency * count)
     wave = static_force + amplitude * np.sin(2 * np.pi * np.arange(count + 1) / count)
     z = []

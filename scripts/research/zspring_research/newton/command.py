@@ -15,6 +15,7 @@ from zspring.options import (
     parameters_option,
     set_option,
 )
+from zspring.records import claimed
 
 STANDARD = FrfSettings()
 SET_HERE = ("drive", "suspension", "friction", "solver.tangent", "bench.frequency", "bench.acceleration")
@@ -96,7 +97,7 @@ def newton(
 
     Takes about one minute. Writes jump.csv, newton.csv, accuracy.csv and the figures jump and newton.
     """
-    with opened(fmu_path) as fmu:
+    with opened(fmu_path) as fmu, claimed(output):
         parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=SET_HERE)
         from .run import NewtonSettings, run_newton
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -53,7 +52,7 @@ def record(
     names = variables.names("parameter", "calculatedParameter")
     used = dict(zip(names, instance.get(names)))
     period = 1 / frequency
-    count = steps_per_period(frequency, used["solver.step"])
+    (count,) = instance.get(["bench.steps_per_period"])
     step = period / count
     begin = settling_periods * period
     if settling_periods:
@@ -67,11 +66,6 @@ def record(
     q, v = np.array(q), np.array(v)
     a = newmark_accelerations(q, v, step, used["solver.alpha"])
     return Recording(used, step, step * np.arange(count + 1), q, v, a)
-
-
-def steps_per_period(frequency: float, step: float) -> int:
-    """Internal steps in a period (Hz) of the FMU's bench, with its largest step in s."""
-    return max(16, math.ceil(1 / (frequency * step) * (1 - 1e-12)))
 
 
 def newmark_accelerations(q: np.ndarray, v: np.ndarray, h: float, hht_alpha: float) -> np.ndarray:

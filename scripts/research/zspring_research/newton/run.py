@@ -14,9 +14,10 @@ from zspring.bench.fixed_work import PERIODS, Point, figure_points
 from zspring.bench.measure import FrfSettings
 from zspring.errors import ZSpringError
 from zspring.figures import save
-from zspring.files import study_head, synthetic_note, used_parameters, write_table
 from zspring.fmu import Fmu, Instance
+from zspring.heads import file_head, synthetic_note
 from zspring.interrupt import Interrupted, stop_on_interrupt
+from zspring.tables import write_table
 from zspring.variables import Value
 
 from .accuracy import Errors, accuracy, coulomb_reference
@@ -51,7 +52,7 @@ def run_newton(fmu: Fmu, parameters: Mapping[str, Value], settings: NewtonSettin
     tables so far are kept).
     """
     parameters = {"solver.max_iterations": MOST_ITERATIONS, **parameters}
-    used = used_parameters(fmu, parameters)
+    used = fmu.used_parameters(parameters)
     if not used["zspring.Mf"] > 0:
         raise ZSpringError(f"zspring.Mf = {used['zspring.Mf']:g} N.m: must be above 0, this study is about friction")
     if not used["solver.alpha"] < LARGEST_ALPHA:
@@ -68,7 +69,7 @@ def run_newton(fmu: Fmu, parameters: Mapping[str, Value], settings: NewtonSettin
         for name, value in used.items()
         if not name.startswith("bench.") and name not in ("drive", "friction", "solver.tangent")
     }
-    head = study_head(fmu, listed, own)
+    head = file_head(fmu, listed, own)
     note = synthetic_note(fmu, used)
     points = figure_points(FrfSettings(amplitudes=settings.amplitudes, frequencies=settings.frequencies))
     if not points:

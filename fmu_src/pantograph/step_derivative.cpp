@@ -1,4 +1,4 @@
-#include "linearized_step.hpp"
+#include "step_derivative.hpp"
 
 namespace zspring {
 namespace {
@@ -10,12 +10,12 @@ double head_force_change(const Parameters& p, bool closed, const Boundary& db, d
 
 }  // namespace
 
-MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, const Boundary& b0,
+MechanicalState step_derivative(const Hht& hht, const MechanicalState& from, const Boundary& b0,
                                 const Boundary& b1, double h, const MechanicalState& to,
                                 const MechanicalState& dfrom, const Boundary& db0, const Boundary& db1) {
   const Mechanics& m = hht.mechanics();
   const Parameters& p = m.parameters;
-  const HhtCoefficients c(m, h);
+  const StepCoefficients c(m, h);
   const bool imposed = hht.head_imposed();
 
   Trial t;
@@ -43,12 +43,11 @@ MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, con
   Vector5 old = dfrom.internal - on_masses(db0.uplift);
   Vector5 now = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v) - on_masses(db1.uplift);
   if (!imposed) {
-    bool closed;
-    hht.head_force(b0, from.q[U1], from.v[U1], closed);
+    const bool closed = hht.contact(b0, from.q[U1], from.v[U1]).closed;
     old[U1] += head_force_change(p, closed, db0, dfrom.q[U1], dfrom.v[U1]);
-    now[U1] += head_force_change(p, t.closed, db1, d.q[U1], d.v[U1]);
+    now[U1] += head_force_change(p, t.contact.closed, db1, d.q[U1], d.v[U1]);
   }
-  Vector5 x = m.mass.cwiseProduct(d.a) + c.weight * now - c.alpha * old;
+  Vector5 x = m.mass.cwiseProduct(d.a) + c.weight * now - c.hht_alpha * old;
   if (imposed) x[U1] = 0;
   hht.solve(c, t, x);
 
@@ -65,13 +64,13 @@ MechanicalState linearized_step(const Hht& hht, const MechanicalState& from, con
     d.q[i] -= t.angle_slope[j] * x[i];
     d.s[j] = -t.moment_slope[j] * x[i];
   }
-  d.a_slope = slope_known(h, from.h) ? Vector5((d.a - dfrom.a) / h) : dfrom.a_slope;
+  d.a_slope = tells_slope(h, from.h) ? Vector5((d.a - dfrom.a) / h) : dfrom.a_slope;
   for (int j = 0; j < 2; ++j)
     if (t.angle_slope[j] == 0) d.a[joint_dof[j]] = d.a_slope[joint_dof[j]] = 0;
   d.internal = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v);
   joints(d.internal) += m.moment_bound.cwiseProduct(d.s);
   d.contact_force =
-      imposed ? hht.reaction(db1, d.internal) : head_force_change(p, t.closed, db1, d.q[U1], d.v[U1]);
+      imposed ? hht.reaction(db1, d.internal) : head_force_change(p, t.contact.closed, db1, d.q[U1], d.v[U1]);
   d.boundary = db1;
 
   d.loss_power = 2 * to.v.dot(m.damping_force(d.v));

@@ -1,4 +1,4 @@
-#include "friction.hpp"
+#include "resolvent.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,94 @@
+#include "outputs.hpp"
+
+#include "droppers.hpp"
+
+namespace zspring::catenary {
+namespace {
+
+// Of the contact wire at a place that moves: its height over the line's datum, its lift from the unloaded shape,
+// the rate of its height.
+Eigen::Vector4d heights(const View& x, const Place& at) { return at.of(x.s.u) + at.of(x.line.shape.height); }
+
+double height(const View& x, const Place& at) { return at.value.dot(heights(x, at)); }
+double uplift(const View& x, const Place& at) { return at.value.dot(at.of(x.s.u)); }
+double velocity(const View& x, const Place& at, double speed) {
+  return at.value.dot(at.of(x.s.v)) + speed * at.slope.dot(heights(x, at));
+}
+
+double height_change(const View& x, const Place& at, const LineState& d, const Passage& moved) {
+  return at.value.dot(at.of(d.u)) + moved.position * at.slope.dot(heights(x, at));
+}
+double uplift_change(const View& x, const Place& at, const LineState& d, const Passage& moved) {
+  return at.value.dot(at.of(d.u)) + moved.position * at.slope.dot(at.of(x.s.u));
+}
+double velocity_change(const View& x, const Place& at, double speed, const LineState& d, const Passage& moved) {
+  const Eigen::Vector4d height = heights(x, at);
+  return at.value.dot(at.of(d.v)) + moved.position * at.slope.dot(at.of(x.s.v)) +
+         speed * at.slope.dot(at.of(d.u)) + moved.speed * at.slope.dot(height) +
+         speed * moved.position * at.curvature.dot(height);
+}
+
+double at_support(const View& x, const VectorXd& u, int i) {
+  const std::vector<int>& supports = x.line.mesh.supports;
+  return i < static_cast<int>(supports.size()) ? u[deflection(supports[i], Contact)] : 0;
+}
+
+double force_change(const View& x, const LineState& d, int dropper) {
+  if (x.line.mesh.droppers.empty() || x.s.slack[dropper] > 0) return 0;
+  return x.line.shape.stiffness[dropper] * stretch(x.line.mesh, d.u, dropper);
+}
+
+const Passage stays;
+
+}  // namespace
+
+View::View(const Line& overhead, const LineState& state) : line(overhead), s(state) {
+  for (int i = 0; i < pantographs; ++i) contact[i] = line.mesh.at(s.passage[i].position);
+  for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point_position[i]);
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (int j = 0; j < static_cast<int>(line.mesh.droppers.size()); ++j) {
+    const double force = dropper_force(j);
+    slack += s.slack[j] > 0;
+    if (force < least) least = force, weakest = j;
+    if (force > most) most = force, strongest = j;
+  }
+}
+
+double View::dropper_force(int j) const {
+  if (line.mesh.droppers.empty() || s.slack[j] > 0) return 0;
+  return line.shape.tension[j] + line.shape.stiffness[j] * stretch(line.mesh, s.u, j);
+}
+
+}  // namespace zspring::catenary
+
+namespace zspring {
+using namespace catenary;
+
+LINEAR(pantograph_dot_x, passage[i].position)
+OUTPUT(pantograph_dot_wire_height, height(x, x.contact[i]), height_change(x, x.contact[i], d, d.passage[i]))
+OUTPUT(pantograph_dot_wire_velocity, velocity(x, x.contact[i], x.s.passage[i].speed),
+       velocity_change(x, x.contact[i], x.s.passage[i].speed, d, d.passage[i]))
+OUTPUT(pantograph_dot_uplift, uplift(x, x.contact[i]), uplift_change(x, x.contact[i], d, d.passage[i]))
+OUTPUT(support_dot_uplift, at_support(x, x.s.u, i), at_support(x, d.u, i))
+OUTPUT(point_dot_height, height(x, x.point[i]), height_change(x, x.point[i], d, stays))
+OUTPUT(point_dot_uplift, uplift(x, x.point[i]), uplift_change(x, x.point[i], d, stays))
+OUTPUT(point_dot_velocity, velocity(x, x.point[i], 0), velocity_change(x, x.point[i], 0, d, stays))
+DISCRETE(droppers_dot_slack, x.slack)
+OUTPUT(droppers_dot_force_min, x.dropper_force(x.weakest), force_change(x, d, x.weakest))
+OUTPUT(droppers_dot_force_max, x.dropper_force(x.strongest), force_change(x, d, x.strongest))
+LINEAR(energy_dot_kinetic, kinetic)
+LINEAR(energy_dot_elastic, elastic)
+LINEAR(energy_dot_dissipated, dissipated)
+LINEAR(energy_dot_work, work)
+DISCRETE(solver_dot_steps, x.s.statistics.steps)
+DISCRETE(solver_dot_iterations, x.s.statistics.iterations)
+DISCRETE(solver_dot_iterations_max, x.s.statistics.iterations_max)
+
+}  // namespace zspring
+
+namespace zspring::catenary {
+
+Outputs outputs(const View& x) { return output_values(x); }
+Outputs outputs_change(const View& x, const LineState& d) { return output_changes(x, d); }
+
+}  // namespace zspring::catenary
