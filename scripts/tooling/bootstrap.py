@@ -272,8 +272,8 @@ def set_up(with_probes: bool, groups: Sequence[str]) -> None:
 def run(command: list[str], with_probes: bool = False, groups: Sequence[str] = (), folder: Path | None = None) -> None:
     """Set up, then become `command`, whose first item is a program of .venv; `folder` is where to start it.
 
-    With probes it finds the folder of the C++ test programs in the environment variable ZSPRING_PROBES. `groups`
-    are dependency groups of pyproject.toml to install as well.
+    With probes it finds the folder of the C++ test programs in the environment variable ZSPRING_PROBES, and the
+    modules of tests/helpers. `groups` are dependency groups of pyproject.toml to install as well.
     """
     try:
         set_up(with_probes, groups)
@@ -283,7 +283,7 @@ def run(command: list[str], with_probes: bool = False, groups: Sequence[str] = (
         sys.exit("set-up: interrupted; start it again to go on")
     variables = environment()
     if with_probes:
-        variables["ZSPRING_PROBES"] = str(PROBES)
+        variables |= {"ZSPRING_PROBES": str(PROBES), "PYTHONPATH": str(ROOT / "tests" / "helpers")}
     program = [str(BIN / command[0]), *command[1:]]
     if folder:
         os.chdir(folder)
