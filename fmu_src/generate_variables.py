@@ -14,12 +14,13 @@ import sys
 import uuid
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from typing import NoReturn
 
 UNBOUNDED = "HUGE_VAL"
 DECLARED = "initialDependencies"
 
 
-def refuse(message):
+def refuse(message) -> NoReturn:
     sys.exit(f"model description: {message}")
 
 
@@ -143,7 +144,7 @@ def final_description(text, root, guid):
         return f"<{tag}>\n{''.join(lines)}    </{tag}>"
 
     # An input set between two steps acts in the next one only: no output has direct feedthrough.
-    outputs = {i: [] for i in declared if variables[i - 1].get("causality") == "output"}
+    outputs = {i: () for i in declared if variables[i - 1].get("causality") == "output"}
     for pattern, replacement, count in (
         ('guid=""', f'guid="{guid}"', 1),
         (r"  <DependencyGroups>.*?</DependencyGroups>\n\n", "", 1),

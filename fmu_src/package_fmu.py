@@ -53,7 +53,7 @@ def table(header: list[str], rows: list[list[str]]) -> str:
 def enumerations(model: ET.Element) -> dict[str, dict[str, str]]:
     """Names of the items by value, by enumeration type."""
     return {
-        simple_type.get("name"): {item.get("value"): item.get("name") for item in simple_type.iter("Item")}
+        simple_type.attrib["name"]: {item.attrib["value"]: item.attrib["name"] for item in simple_type.iter("Item")}
         for simple_type in model.iter("SimpleType")
     }
 
@@ -74,7 +74,7 @@ def variable_tables(model: ET.Element) -> str:
     parts = []
     for causality, heading in CAUSALITIES:
         rows = []
-        for variable in model.find("ModelVariables"):
+        for variable in model.iterfind("ModelVariables/*"):
             if variable.get("causality") != causality:
                 continue
             typed = variable[0]
@@ -83,7 +83,7 @@ def variable_tables(model: ET.Element) -> str:
             note = "; may be changed during the simulation" if variable.get("variability") == "tunable" else ""
             rows.append(
                 [
-                    variable.get("name"),
+                    variable.attrib["name"],
                     declared or typed.get("unit") or typed.tag,
                     items[declared][start] if declared and start else start,
                     bounds(typed),
@@ -102,8 +102,8 @@ def enumeration_tables(model: ET.Element) -> str:
     """One table per enumeration type."""
     parts = []
     for simple_type in model.iter("SimpleType"):
-        parts.append(f"<h3>{html.escape(simple_type.get('name'))}</h3>")
-        rows = [[i.get("name"), i.get("value"), i.get("description", "")] for i in simple_type.iter("Item")]
+        parts.append(f"<h3>{html.escape(simple_type.attrib['name'])}</h3>")
+        rows = [[i.attrib["name"], i.attrib["value"], i.get("description", "")] for i in simple_type.iter("Item")]
         parts.append(table(["Item", "Value", "Meaning"], rows))
     return "\n".join(parts)
 
@@ -114,7 +114,7 @@ def documentation(model_description: Path, resources: Path) -> str:
     template = string.Template((resources / "documentation.html").read_text("utf-8"))
     return template.substitute(
         style=STYLE.read_text("utf-8"),
-        version=html.escape(model.get("version")),
+        version=html.escape(model.attrib["version"]),
         variables=variable_tables(model),
         enumerations=enumeration_tables(model),
     )

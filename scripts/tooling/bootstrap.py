@@ -28,6 +28,7 @@ ROOT = TOOLING.parents[1]
 VENV = ROOT / ".venv"
 BIN = VENV / ("Scripts" if os.name == "nt" else "bin")
 PYTHON = BIN / ("python.exe" if os.name == "nt" else "python")
+CMAKE: list[str | Path] = [PYTHON, "-m", "cmake"]
 STAMP = VENV / "stages.json"
 BUILD = ROOT / "build"
 PACKAGE_BUILD = BUILD / "package"
@@ -202,11 +203,10 @@ def build_probes(runner: Runner, compiler: str) -> None:
     """Build the C++ programs of tests/native."""
     say(f"building the C++ test probes ({how_long(compiler)})")
     use_compiler(PROBES_BUILD, compiler)
-    cmake = [PYTHON, "-m", "cmake"]
     failure = "cannot build the test probes"
     settings = ["-DZSPRING_TESTS=ON", f"-DCMAKE_MAKE_PROGRAM={BIN / 'ninja'}", f"-DPython3_EXECUTABLE={PYTHON}"]
-    runner.run(failure, [*cmake, "-S", ROOT, "-B", PROBES_BUILD, "-G", "Ninja", *settings], CXX=compiler)
-    runner.run(failure, [*cmake, "--build", PROBES_BUILD, "--target", "probes"])
+    runner.run(failure, [*CMAKE, "-S", ROOT, "-B", PROBES_BUILD, "-G", "Ninja", *settings], CXX=compiler)
+    runner.run(failure, [*CMAKE, "--build", PROBES_BUILD, "--target", "probes"])
 
 
 def install_browser(runner: Runner, _compiler: str) -> None:

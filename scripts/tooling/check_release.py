@@ -13,7 +13,6 @@ import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ET
-from collections import defaultdict
 from pathlib import Path
 
 from bootstrap import BUILD, PYTHON, ROOT, TOOLING
@@ -40,12 +39,12 @@ def table(rows: list[tuple[str, int, int, float]]) -> str:
 
 def test_rows() -> list[tuple[str, int, int, float]]:
     """One row for each file of tests in pytest's report."""
-    rows = defaultdict(lambda: [0, 0, 0.0])
+    rows: dict[str, tuple[int, int, float]] = {}
     for case in ET.parse(REPORT).iter("testcase"):
-        row = rows[(case.get("classname") or case.get("name")).replace(".", "/")]
+        name = (case.get("classname") or case.attrib["name"]).replace(".", "/")
         failed = any(child.tag in ("failure", "error", "skipped") for child in case)
-        row[1 if failed else 0] += 1
-        row[2] += float(case.get("time"))
+        good, bad, seconds = rows.get(name, (0, 0, 0.0))
+        rows[name] = good + (not failed), bad + failed, seconds + float(case.attrib["time"])
     return [(name, *rows[name]) for name in sorted(rows)]
 
 

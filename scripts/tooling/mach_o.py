@@ -18,7 +18,7 @@ CODE_DIRECTORY = 0xFADE0C02
 SHA256 = 2
 
 
-def commands(file: bytes) -> Iterator[tuple[int, int]]:
+def commands(file: bytes | bytearray) -> Iterator[tuple[int, int]]:
     """(load command, its offset) of a 64-bit Mach-O file."""
     count, offset = struct.unpack_from("<I", file, 16)[0], 32
     for _ in range(count):
@@ -27,7 +27,7 @@ def commands(file: bytes) -> Iterator[tuple[int, int]]:
         offset += size
 
 
-def section_sizes(file: bytes) -> dict[str, int]:
+def section_sizes(file: bytes | bytearray) -> dict[str, int]:
     sizes = {}
     for command, offset in commands(file):
         if command == LC_SEGMENT_64:
@@ -49,7 +49,7 @@ def set_unwritten_entries(file: bytearray, dysymtab: int) -> None:
     struct.pack_into(f"<{count}I", file, start, *table)
 
 
-def code_hashes(file: bytes, signature: int) -> tuple[int, bytes]:
+def code_hashes(file: bytes | bytearray, signature: int) -> tuple[int, bytes]:
     """Where the signature keeps the hashes of the file's pages, and what they should be."""
     blobs = struct.unpack_from(">I", file, signature + 8)[0]
     offsets = [struct.unpack_from(">II", file, signature + 12 + 8 * n)[1] + signature for n in range(blobs)]

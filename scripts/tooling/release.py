@@ -15,7 +15,7 @@ import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-from bootstrap import BIN, BUILD, PYTHON, ROOT, environment
+from bootstrap import BIN, BUILD, CMAKE, PYTHON, ROOT, environment
 from mach_o import make_reproducible
 from setup_tools import Runner, SetupError, lock
 
@@ -55,11 +55,10 @@ def build(platform: str, descriptor: int) -> Path:
     log = RELEASE_BUILD / f"{platform}.log"
     log.unlink(missing_ok=True)
     runner = Runner(log, ROOT, environment(), descriptor)
-    cmake = [PYTHON, "-m", "cmake"]
     runner.run(
         f"{platform}: cannot configure the build",
         [
-            *cmake,
+            *CMAKE,
             "-S",
             ROOT,
             "-B",
@@ -71,7 +70,7 @@ def build(platform: str, descriptor: int) -> Path:
             f"-DPython3_EXECUTABLE={PYTHON}",
         ],
     )
-    runner.run(f"{platform}: cannot build the libraries", [*cmake, "--build", folder])
+    runner.run(f"{platform}: cannot build the libraries", [*CMAKE, "--build", folder])
     for library in folder.glob("*.dylib"):
         try:
             make_reproducible(library)
@@ -110,7 +109,7 @@ def write_fmus(builds: dict[str, Path], output: Path) -> list[Path]:
         for platform, folder in builds.items():
             if (folder / description.relative_to(some_build)).read_bytes() != description.read_bytes():
                 raise SetupError(f"{model}: the model description for {platform} differs from the others")
-        name = ET.parse(description).find("CoSimulation").get("modelIdentifier")
+        name = next(ET.parse(description).iter("CoSimulation")).attrib["modelIdentifier"]
         libraries = {
             platform: folder / (name + SUFFIXES[PLATFORMS[platform][0]]) for platform, folder in builds.items()
         }

@@ -30,7 +30,7 @@ def lock(path: Path) -> Iterator[int]:
     """Hold the lock of this file. It ends with the last process that has the descriptor, however that ends."""
     path.parent.mkdir(exist_ok=True)
     with open(path, "a+b") as file:
-        if os.name == "nt":
+        if sys.platform == "win32":
             import msvcrt
 
             def acquire() -> None:
@@ -60,7 +60,7 @@ class Runner:
 
     def __init__(self, log: Path, folder: Path, variables: dict[str, str], lock_descriptor: int) -> None:
         self.log, self.folder, self.variables = log, folder, variables
-        self.inherited = {} if os.name == "nt" else {"pass_fds": [lock_descriptor]}
+        self.inherited = [] if os.name == "nt" else [lock_descriptor]
 
     def run(self, failure: str, command: list[str | Path], **variables: str) -> None:
         """Run `command`; if it fails, print the end of its output and raise SetupError(failure)."""
@@ -75,7 +75,7 @@ class Runner:
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=log,
-                **self.inherited,
+                pass_fds=self.inherited,
             )
         if result.returncode:
             output = self.log.read_bytes()[begin:].decode(errors="replace")
@@ -88,9 +88,9 @@ def compiles(compiler: str) -> bool:
     with tempfile.TemporaryDirectory() as folder:
         source, program = Path(folder, "trial.cpp"), Path(folder, "trial.exe")
         source.write_text(TRIAL_PROGRAM)
-        compile_it = [*shlex.split(compiler, posix=os.name != "nt"), "-std=c++17", source, "-o", program]
+        compile_it = [*shlex.split(compiler, posix=os.name != "nt"), "-std=c++17", str(source), "-o", str(program)]
         try:
-            for command in compile_it, [program]:
+            for command in compile_it, [str(program)]:
                 subprocess.run(command, check=True, capture_output=True, stdin=subprocess.DEVNULL)
         except (OSError, subprocess.CalledProcessError):
             return False

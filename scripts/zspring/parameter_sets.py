@@ -68,7 +68,7 @@ def read_set(path: Path, fmu: Fmu) -> dict[str, Value]:
     """
     root = _root(path)
     units = {
-        unit.get("name"): _base_unit(base)
+        unit.get("name", ""): _base_unit(base)
         for unit in root.iterfind("ssv:Units/ssc:Unit", _NAMESPACES)
         if (base := unit.find("ssc:BaseUnit", _NAMESPACES)) is not None
     }
@@ -137,9 +137,9 @@ def _value(fmu: Fmu, variable: ScalarVariable, element: ET.Element, units: Mappi
     """The value of one parameter in the FMU's unit."""
     typed = next(iter(element), None)
     kind = None if typed is None else typed.tag.removeprefix(f"{{{_SSV}}}")
-    if kind != variable.type and (kind, variable.type) != ("Integer", "Enumeration"):
+    if typed is None or (kind != variable.type and (kind, variable.type) != ("Integer", "Enumeration")):
         raise ZSpringError(f"{variable.name} is {kind}: must be {variable.type}")
-    value, unit = parse(variable, typed.get("value", "")), typed.get("unit")
+    value, unit = parse(variable, typed.get("value", "")), typed.get("unit", "")
     if kind != "Real":
         return value
     if not math.isfinite(value):

@@ -72,7 +72,7 @@ def conversion(unit: str, *wanted: str) -> tuple[str, float]:
 
 def offered(*wanted: str) -> list[str]:
     """The wanted units, each with the symbols that are multiples of it; what a message offers."""
-    found = {}
+    found: dict[str, None] = {}
     for target in wanted:
         kind = _pint(target).dimensionality
         found |= dict.fromkeys([target, *(s for s in SYMBOLS if s.isascii() and _pint(s).dimensionality == kind)])

@@ -41,10 +41,10 @@ class FmuBench:
         duration = periods / self._frequency
         self.instance.step(self._time, duration)
         self._time += duration
-        real, imaginary, self.change, self.periods = self.instance.get(
+        real, imaginary, self.change, count = self.instance.get(
             ["bench.H_re", "bench.H_im", "bench.change", "bench.periods"]
         )
-        self.H = complex(real, imaginary)
+        self.H, self.periods = complex(real, imaginary), int(count)
 
     def save(self) -> dict[str, Any]:
         """The state after `run`, fit for JSON."""

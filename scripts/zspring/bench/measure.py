@@ -192,7 +192,6 @@ def settle(
                 status = SETTLED
     except StepDiscarded as error:
         status, (H, change) = f"{FAILED}: {error}", nothing
-    used = (after - earlier for earlier, after in zip(before, bench.instance.get(counters)))
-    return FrfPoint(
-        amplitude, frequency, status, H, bench.periods, change, *used, *bench.instance.get(["solver.iterations_max"])
-    )
+    used = (int(after - earlier) for earlier, after in zip(before, bench.instance.get(counters)))
+    worst = map(int, bench.instance.get(["solver.iterations_max"]))
+    return FrfPoint(amplitude, frequency, status, H, bench.periods, change, *used, *worst)

@@ -57,7 +57,7 @@ class BenchModel:
         periods     of each curve: run every point for so many instead of until it is steady. The answer then
                     depends smoothly on the parameters, which differences need.
         """
-        schedule = periods or [None] * len(curves)
+        schedule: Sequence[Periods | None] = periods or [None] * len(curves)
         tasks = [
             [self._pool.submit(self._sweep, parameters, *item) for item in zip(curves, schedule)]
             for parameters in candidates

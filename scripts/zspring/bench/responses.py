@@ -12,6 +12,7 @@ s = i omega and v the measured value, exp(i omega t):
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -58,10 +59,11 @@ def acceleration_of(unit: str, frequency: np.ndarray, amplitude: np.ndarray) -> 
     return factor * amplitude * (2 * np.pi * frequency) ** (2 - AMPLITUDES[kind])
 
 
+Number = TypeVar("Number", complex, np.ndarray)
 QUANTITIES = {"receptance": "m/N", "stiffness": "N/m"}  # in which an FRF is shown
 
 
-def as_quantity(H: complex | np.ndarray, quantity: str) -> complex | np.ndarray:
+def as_quantity(H: Number, quantity: str) -> Number:
     """Receptance H in m/N, or dynamic stiffness 1/H in N/m."""
     with np.errstate(invalid="ignore"):  # of NaN, a point that was left out
         return H if quantity == "receptance" else 1 / H

@@ -81,7 +81,7 @@ def _curve(data: dict, factors: dict | None, amplitude: float | None) -> Curve:
         raise ZSpringError(f"Z-axis of type {data['z_axis_spec_data_type']}: must be acceleration (12)")
     if peak < 0 or not (peak or amplitude):
         raise ZSpringError("no amplitude: neither as Z-axis value nor in the settings")
-    peak = peak or amplitude
+    peak = peak or amplitude or 0.0
     H = Response("", derivatives, inverse, factor).receptance(frequency, value)
     return Curve(f"{peak:g} m/s2", frequency, np.full(frequency.shape, peak), H)
 

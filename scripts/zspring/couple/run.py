@@ -89,7 +89,7 @@ def compare_and_write(system: System, folder: Path, suffix: str) -> None:
     except (Interrupted, ZSpringError) as error:
         stopped = error
     paths = folder / "steps.csv", folder / f"steps.{suffix}"
-    if not rows:
+    if stopped and not rows:
         raise stopped
     head = {**system.catenary.identity, "speed": speed, "drive": system.coupling.drive}
     columns = ["scheme", "step [s]", "rms [N]", "largest [N]", "mean [N]", "deviation [N]", "elapsed [s]"]

@@ -47,8 +47,8 @@ def write_ssp(run: LineRun, path: Path) -> None:
         starts |= {element_name(i): (pantograph, start) for i, start in enumerate(run.head_starts)}
         for name, (fmu, (parameters, inputs)) in starts.items():
             values = Path(folder, f"{name}.ssv")
-            with Fmu(Path(folder, fmu.path.name)) as copy:
-                write_set(values, copy, {**parameters, **inputs}, SET_NAME, f"Parameters and inputs: {name}")
+            with Fmu(Path(folder, fmu.path.name)) as stripped:
+                write_set(values, stripped, {**parameters, **inputs}, SET_NAME, f"Parameters and inputs: {name}")
             archive.write(values, f"resources/{values.name}")
             component = ET.SubElement(
                 elements,

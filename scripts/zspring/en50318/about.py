@@ -79,7 +79,7 @@ def method() -> Chapter:
 def made_with(fmus: Iterable[Fmu], settings: Mapping[str, str], files: Iterable[Path]) -> Chapter:
     """Versions, settings and the files beside the report."""
     now = datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
-    rows: list[list[str | Cell]] = [["date", now]]
+    rows = [["date", now]]
     for fmu in fmus:
         name = fmu.description.modelName
         rows += [[name, f"{fmu.description.version}, GUID {fmu.description.guid}"], [f"{name}, SHA-256", fmu.sha256]]
@@ -90,5 +90,5 @@ def made_with(fmus: Iterable[Fmu], settings: Mapping[str, str], files: Iterable[
         *([key, value] for key, value in settings.items()),
         ["files beside this report", ", ".join(path.name for path in files)],
     ]
-    table = Table("Made with", ["", ""], [[row[0], Cell(str(row[1]), WORDS)] for row in rows])
+    table = Table("Made with", ["", ""], [[row[0], Cell(row[1], WORDS)] for row in rows])
     return Chapter("Versions, settings, files", [table])

@@ -12,7 +12,7 @@ from ..line.series import Series
 from ..line.statistics import Statistics, statistics
 from . import plot, report
 from .edition import Edition, Judgement, judge
-from .page import Chapter, Picture
+from .page import Chapter, Picture, Table
 from .plan import HEAD_LINE, Run, slug
 
 FILTERS = {  # order of the two-pass filter, by what the tables call it
@@ -66,7 +66,7 @@ def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
             ),
             report.spans_table(found, by_span, f"{title}, span by span"),
         ]
-    seen = {}
+    seen: dict[tuple[str, str], Table] = {}
     for case, run in zip(edition.cases, made.runs):
         seen.setdefault((case.line, case.pantograph), report.parameter_table(case, run, catenary, pantograph))
     chapter.blocks += seen.values()

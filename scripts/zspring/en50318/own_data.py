@@ -73,7 +73,7 @@ def report_on(
     if found:
         lines += report.as_lines(figures_table(found, str(section or "the whole series")))
     if len(found) == 2:
-        made.append(agreement_chapter(*found.values(), data.edition))
+        made.append(agreement_chapter(found[first], found["Line test"], data.edition))
     if source:
         folder.mkdir(parents=True, exist_ok=True)
         chapter, written = frf_chapter(pantograph, source, parameters, edges, direction, folder, jobs)
@@ -92,7 +92,7 @@ def series_chapter(series: Series, section: Section | None, case: Case | None, t
     judged = judge(found, case.ranges) if case else []
     place = str(section or "the whole series")
     chapter = Chapter(title, [f"{series.name}: {series.time.size} samples, one each {1e3 * series.step:.4g} ms."])
-    if judged:
+    if case and judged:
         chapter.blocks.append(report.verdict(case.title, {title.lower(): judged}) + ".")
     chapter.blocks += [
         report.case_table(found, judged, series.speed, f"{title}: {place}"),
@@ -145,8 +145,8 @@ def frf_chapter(
     failed = sum(int((c.computed != c.computed).sum()) for c in comparisons)
     missing = [f"{failed} points could not be computed."] if failed else []
     picture = Picture(plot.frf_comparison_figure(comparisons, edges, title), title, "frf-comparison.png")
-    blocks = [text, *missing, report.frf_table(comparisons), picture]
-    return Chapter("Pantograph: measured and computed FRF", blocks), [path]
+    table = report.frf_table(comparisons)
+    return Chapter("Pantograph: measured and computed FRF", [text, *missing, table, picture]), [path]
 
 
 def figures_table(found: Mapping[str, Statistics], caption: str) -> Table:

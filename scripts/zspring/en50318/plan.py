@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from typing import Any
 
 from ..errors import ZSpringError
 from ..fmu import Fmu
@@ -54,7 +55,7 @@ class Choice:
 
     label: str
     line: Mapping[str, Value] = field(default_factory=dict)
-    run: Mapping[str, object] = field(default_factory=dict)
+    run: Mapping[str, Any] = field(default_factory=dict)
     spans: tuple[int, int] | None = None  # evaluated, if others
 
 
@@ -105,8 +106,8 @@ def sensitivity_runs(references: Sequence[Run]) -> list[Run]:
     runs = []
     for run in references:
         for choice in CHOICES:
-            named = {"group": "sensitivity", "label": choice.label, "of": f"{run.of}, {run.label}", "series": ""}
-            changed = replace(run, line={**run.line, **choice.line}, **choice.run, **named)
+            changed = replace(run, line={**run.line, **choice.line}, **choice.run)
+            changed = replace(changed, group="sensitivity", label=choice.label, of=f"{run.of}, {run.label}", series="")
             if choice.spans:
                 first, last = choice.spans
                 changed = replace(changed, section=replace(run.section, first=first, last=last))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -19,7 +20,7 @@ from .frf import FrfComparison
 
 COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:purple")
 STYLES = ("-", "-", ":", "--")
-SHADE = {"color": "tab:green", "alpha": 0.12, "linewidth": 0}
+SHADE: dict[str, Any] = {"color": "tab:green", "alpha": 0.12, "linewidth": 0}
 SLIPPING = 0.99  # share of Mf from which a joint counts as slipping; the tanh law creeps below it
 
 

@@ -62,7 +62,7 @@ def case_table(found: Statistics, judgements: Sequence[Judgement], speed: float 
     inside = Cell("inside", GOOD) if share <= DEVIATION_SHARE else Cell("outside", BAD)
     blank = [""] * (2 if judgements else 0)
     label = f"standard deviation / mean force, at most {DEVIATION_SHARE:g}"
-    rows.append([label, f"{share:.3f}", *(["", inside] if judgements else [])])
+    rows.append([label, f"{share:.3f}", *([Cell(""), inside] if judgements else [])])
     if speed:
         target = number("mean_force", mean_force("AC", speed))
         rows.append(["target mean force of AC lines, N", target, *blank])
@@ -80,7 +80,7 @@ def sensitivity_table(
     reference: Statistics, choices: Mapping[str, Statistics], judged: Mapping[str, Sequence[Judgement]], caption: str
 ) -> Table:
     """Main figures by choice; those outside their accepted ranges are marked."""
-    rows = []
+    rows: list[list[str | Cell]] = []
     for label, found in {"reference": reference, **choices}.items():
         outside = {judgement.name for judgement in judged[label] if not judgement.is_inside}
         rows.append([label, *(Cell(number(n, found[n]), BAD if n in outside else "") for n in SENSITIVE)])

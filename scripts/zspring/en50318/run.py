@@ -49,7 +49,7 @@ def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int
         made.insert(1, chapters.sensitivity_chapter(outcomes[0], sensitivity, found))
     lines = [line for each in outcomes for line in _summary(each)]
     if sensitivity:
-        lines.append(made[1].blocks[1].removesuffix("."))
+        lines.append(str(made[1].blocks[1]).removesuffix("."))
     if heads:
         made.append(chapters.heads_chapter(heads, found, folder))
         by_head = chapters.heads(heads, found)
@@ -108,7 +108,7 @@ def _summary(made: chapters.Outcome) -> list[str]:
 
 def _head(catenary: Fmu, pantograph: Fmu) -> dict[str, str]:
     """What all runs have in common."""
-    head = {}
+    head: dict[str, str] = {}
     for fmu in (catenary, pantograph):
         head |= {f"{fmu.description.modelName} {key}": value for key, value in fmu.identity.items()}
         head[f"{fmu.description.modelName} SHA-256"] = fmu.sha256

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -139,7 +139,7 @@ class Problem:
                     error = (as_quantity(H, quantity) - wanted) / scale
             error = np.where(np.isfinite(error), error, PENALTY * (1 + 1j))
             parts += [error.real, error.imag]
-        if self.static:
+        if self.static and self.settings.static and answer.static is not None:
             wanted, force = (f - f.mean() for f in (self.static.force, answer.static))
             points = sum(curve.frequency.size for curve in self.curves)
             # As heavy as all points of the curves together, if they are off as much.
@@ -152,7 +152,7 @@ class Problem:
         """Half the sum of squared residuals for each x, shape (len(xs),)."""
         return np.array([0.5 * np.sum(self.residuals(answer) ** 2) for answer in self.answers(xs)])
 
-    def jacobian(self, x: np.ndarray, answer: Answer, columns: Sequence[int]) -> np.ndarray:
+    def jacobian(self, x: np.ndarray, answer: Answer, columns: Collection[int]) -> np.ndarray:
         """d residuals / dx (m, len(columns)) at x, whose answer it is, by one-sided differences."""
         base, steps = self.residuals(answer), []
         frees = list(self.settings.free.values())

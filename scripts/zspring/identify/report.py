@@ -99,7 +99,7 @@ def residual_table(problem: Problem, fit: Fit) -> list[str]:
             ]
         rows.append([curve.label, f"{kept.frequency.size}", *cells])
     lines = aligned(rows)
-    if problem.static:
+    if problem.static and fit.answer.static is not None:
         measured, force = (f - f.mean() for f in (problem.static.force, fit.answer.static))
         lines.append(
             f"static test: rms {_rms(force - measured):.3g} N of {_rms(measured):.3g} N, "

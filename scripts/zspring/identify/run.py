@@ -28,7 +28,7 @@ from ..variables import Value, parse
 from . import report
 from .fit import Fit, fit
 from .plot import fit_figure, static_figure
-from .problem import Problem, ThreeMassModel, ZSpringModel
+from .problem import Model, Problem, ThreeMassModel, ZSpringModel
 from .search import Cost, cost_record, search
 from .settings import LINEAR_PARAMETERS, Settings
 
@@ -63,7 +63,7 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
         bench = BenchModel(instances, settings.direction, stop)
         try:
             if settings.model == "linear":
-                model = ThreeMassModel(curves, defaults)
+                model: Model = ThreeMassModel(curves, defaults)
             else:
                 model = ZSpringModel(bench, curves, static)
             problem = Problem(settings, model, curves, static)
@@ -95,7 +95,7 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
     ]
     title = f"Identified from {', '.join(source.path.name for source in settings.sources)}"
     figures = {"fit": fit_figure(curves, result.answer.curves, f"{title}: {settings.model} model")}
-    if static:
+    if static and result.answer.static is not None:
         figures["static"] = static_figure(static, result.answer.static, f"{title}: static test")
     for name, figure in figures.items():
         paths.append(folder / f"{name}.{suffix}")

@@ -59,12 +59,13 @@ def search(
             record.append((tuple(x.tolist()), float(cost)))
         return np.array([known[tuple(x.tolist())] for x in xs])
 
+    generation = 0
+
     def report(intermediate_result) -> None:
         nonlocal generation
         generation += 1
         progress(generation, float(intermediate_result.fun))
 
-    generation = 0
     size = problem.start.size
     result = differential_evolution(
         lambda x: 0.0,  # never called: the workers below compute whole generations

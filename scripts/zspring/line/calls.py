@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from ctypes import byref, c_double, c_int, c_size_t, c_uint, c_void_p
+from ctypes import Array, byref, c_double, c_int, c_size_t, c_uint, c_void_p
 from functools import partial
 
 from fmpy.fmi1 import FMICallException
@@ -34,7 +34,7 @@ class PreparedCalls:
     def reals(self, names: Sequence[str]) -> Reals:
         return Reals(self, names)
 
-    def integers(self, names: Sequence[str]) -> Callable[[], Sequence[int]]:
+    def integers(self, names: Sequence[str]) -> Callable[[], Array[c_int]]:
         """A function that gets these Integer variables, always into the same array."""
         values = (c_int * len(names))()
         get = self.prepare("fmi2GetInteger", self.references(names), c_size_t(len(names)), values)
@@ -76,18 +76,18 @@ class Reals:
         self._set = calls.prepare("fmi2SetReal", references, count, self.values)
         self._set_slopes = calls.prepare("fmi2SetRealInputDerivatives", references, count, orders, self.slopes)
 
-    def get(self) -> Sequence[float]:
+    def get(self) -> Array[c_double]:
         """Their values, always in the same array."""
         self._get()
         return self.values
 
     def set(self, values: Sequence[float]) -> None:
-        self.values[:] = values
+        self.values[:] = [*values]
         self._set()
 
     def set_slopes(self, slopes: Sequence[float]) -> None:
         """First time derivatives of inputs, for the next step."""
-        self.slopes[:] = slopes
+        self.slopes[:] = [*slopes]
         self._set_slopes()
 
 
@@ -103,7 +103,7 @@ class Jacobian:
             call = calls.prepare("fmi2GetDirectionalDerivative", unknowns, count, known, c_size_t(1), one, column)
             self._columns.append((column, call))
 
-    def get(self) -> list[Sequence[float]]:
+    def get(self) -> list[Array[c_double]]:
         """By input the derivatives of all outputs, always in the same arrays."""
         for _, call in self._columns:
             call()

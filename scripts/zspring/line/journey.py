@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -45,6 +45,14 @@ class Journey:
 
 
 @dataclass(frozen=True)
+class FittedJourney(Journey):
+    """A journey whose start and stop are known."""
+
+    start: float
+    stop: float
+
+
+@dataclass(frozen=True)
 class LineExtent:
     """Spans of a line, and what fits into it."""
 
@@ -53,7 +61,7 @@ class LineExtent:
 
     @classmethod
     def of(cls, catenary: Fmu, line: Mapping[str, Value]) -> LineExtent:
-        return cls(parameter_value(catenary, line, "line.spans"), parameter_value(catenary, line, "line.span"))
+        return cls(int(parameter_value(catenary, line, "line.spans")), parameter_value(catenary, line, "line.span"))
 
     @property
     def length(self) -> float:
@@ -64,7 +72,7 @@ class LineExtent:
         """Positions of the supports inside the line, m. (spans - 1,)"""
         return self.span * np.arange(1, self.spans)
 
-    def complete(self, journey: Journey, count: int) -> Journey:
+    def complete(self, journey: Journey, count: int) -> FittedJourney:
         """The journey with its start and stop. Raises ZSpringError where it does not fit the line."""
         if not 1 <= count <= MOST_PANTOGRAPHS:
             raise ZSpringError(f"{count} pantographs: must be 1 or {MOST_PANTOGRAPHS}")
@@ -96,7 +104,7 @@ class LineExtent:
             raise ZSpringError(
                 f"step = {journey.step:g} s: is longer than the run of {(stop - start) / journey.speed:g} s"
             )
-        return replace(journey, start=start, stop=stop, spacing=behind)
+        return FittedJourney(**{**vars(journey), "start": start, "stop": stop, "spacing": behind})
 
 
 def parameter_value(fmu: Fmu, parameters: Mapping[str, Value], name: str) -> Value:

@@ -92,14 +92,14 @@ def read_result(path: Path) -> LineResult:
         def of_each(name: str) -> np.ndarray:
             return np.column_stack([table[name.format(i + 1)] for i in range(count)])
 
-        uplift = {name: series for name, series in table.items() if _SUPPORT.match(name)}
+        uplift = {found[1]: series for name, series in table.items() if (found := _SUPPORT.match(name))}
         return LineResult(
             time=table["time [s]"],
             position=of_each("position {} [m]"),
             contact_force=of_each("contact force {} [N]"),
             wire_height=of_each("wire height {} [m]"),
             head_height=of_each("head height {} [m]"),
-            support_position=np.array([float(_SUPPORT.match(name)[1]) for name in uplift]),
+            support_position=np.array([float(position) for position in uplift]),
             support_uplift=np.array(list(uplift.values())).T.reshape(len(table["time [s]"]), -1),
             slack_droppers=table["slack droppers"].astype(int),
             moment=np.stack([of_each(f"moment {joint} {{}} [N.m]") for joint in ("alpha", "beta")], axis=2),

@@ -18,7 +18,7 @@ from ..variables import Value, parse, with_unit
 from .calls import PreparedCalls
 from .recorder import Recorder
 from .result import LineResult
-from .schemes import GaussSeidel, Implicit, Jacobi
+from .schemes import GaussSeidel, Implicit, Jacobi, Pantographs
 from .sides import ContactInMaster, ContactInPantograph, Wire
 from .system import System
 
@@ -88,7 +88,7 @@ class LineRun:
     @cached_property
     def wire_start(self) -> tuple[dict[str, Value], dict[str, float]]:
         """Parameters and first inputs of the catenary."""
-        parameters, inputs = dict(self.system.line), {}
+        parameters, inputs = dict(self.system.line), dict[str, float]()
         for i, force in enumerate(self._static_forces):
             name = f"pantograph[{i + 1}]"
             parameters[f"{name}.start"] = self.journey.start - i * self.journey.spacing
@@ -98,7 +98,7 @@ class LineRun:
     def _make_scheme(self, head_calls: Sequence[PreparedCalls]) -> Implicit | GaussSeidel | Jacobi:
         coupling, forces = self.system.coupling, self._static_forces
         if coupling.drive == "Wire":
-            sides = [ContactInPantograph(calls) for calls in head_calls]
+            sides: Pantographs = [ContactInPantograph(calls) for calls in head_calls]
         else:
             for damping in filter(None, self.system.of_each("contact.c")):
                 raise ZSpringError(f"contact.c = {damping:g} N.s/m: must be 0 with drive Force; use drive Wire")
@@ -107,7 +107,7 @@ class LineRun:
         if coupling.scheme == "implicit":
             tolerance = coupling.tolerance * max(1.0, *forces)
             return Implicit(self._wire, sides, tolerance, coupling.max_iterations)
-        return {"explicit": GaussSeidel, "jacobi": Jacobi}[coupling.scheme](self._wire, sides)
+        return GaussSeidel(self._wire, sides) if coupling.scheme == "explicit" else Jacobi(self._wire, sides)
 
     def finish(self, progress: bool = False) -> None:
         """Run to the stop. Raises Interrupted after Ctrl-C."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from ctypes import Array, c_double
 from dataclasses import dataclass
 
 import numpy as np
@@ -146,7 +147,7 @@ class Implicit:
         return errors
 
     def _on_linear_wire(
-        self, time: float, size: float, heights: Sequence[float], forces: Sequence[float], errors: Sequence[float]
+        self, time: float, size: float, heights: Sequence[float], forces: list[float], errors: Sequence[float]
     ) -> list[float]:
         """Forces that agree with a wire at `heights` under `forces`, and as compliant as in the last step."""
         compliance = self._wire.compliance()
@@ -162,7 +163,7 @@ class Implicit:
                 break
         return forces
 
-    def _newton(self, compliance: Sequence[Sequence[float]], errors: Sequence[float]) -> Sequence[float]:
+    def _newton(self, compliance: Sequence[Array[c_double]], errors: Sequence[float]) -> Sequence[float]:
         """Change of the forces that makes the linearised errors vanish."""
         slopes = [pantograph.slopes() for pantograph in self._pantographs]
         if len(errors) == 1:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from ctypes import Array, c_double
 
 from .calls import Jacobian, PreparedCalls
 
@@ -34,7 +35,7 @@ class Wire:
         self.steps += 1
         self.look()
 
-    def compliance(self) -> list[Sequence[float]]:
+    def compliance(self) -> list[Array[c_double]]:
         """Heights at the end of the last step by the forces there, m/N: [i][j] is height j by force i."""
         return self._compliance.get()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from ..fmu import Fmu
 from ..variables import Value
@@ -34,7 +35,7 @@ class System:
         """A parameter of each pantograph."""
         return [parameter_value(self.pantograph, given, parameter) for given in self.pantographs]
 
-    def changed(self, line: Mapping[str, Value], pantographs: Mapping[str, Value], **fields: object) -> System:
+    def changed(self, line: Mapping[str, Value], pantographs: Mapping[str, Value], **fields: Any) -> System:
         """With these parameters of the line and of all pantographs, and other fields."""
         each = [{**given, **pantographs} for given in self.pantographs]
         return replace(self, line={**self.line, **line}, pantographs=each, **fields)

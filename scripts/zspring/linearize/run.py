@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.io import savemat
@@ -36,7 +37,7 @@ def run_linearize(fmu: Fmu, parameters: Mapping[str, Value], frequency: np.ndarr
         modes = complex_modes(model, reach)
         note = "  (of synthetic parameters)" if synthetic and name != "linear" else ""
         print(f"{TITLES[name]}{note}", *_table(model, modes), "", sep="\n")
-        arrays = {
+        arrays: dict[str, Any] = {
             "M": model.M,
             "C": model.C,
             "K": model.K,
@@ -70,7 +71,7 @@ def _table(model: LinearModel, modes: Modes) -> list[str]:
     return lines
 
 
-def _numbers(values: Sequence[float]) -> str:
+def _numbers(values: np.ndarray) -> str:
     return ", ".join(f"{value:.3f}" for value in values)
 
 

@@ -78,13 +78,13 @@ def _dimensions(axes: Axes, cycle: Cycle) -> None:
     _draw(axes, points, "C7", frame=True)
     head, head_end, frame_end, top = points
     p = cycle.parameters
-    above, below = {"xytext": (-10, 10), "ha": "right"}, {"xytext": (10, -10), "ha": "left"}
-    for one, other, text, side in (
+    above, below = ((-10, 10), "right"), ((10, -10), "left")
+    for one, other, text, (offset, align) in (
         (head, head_end, f"L1 = {1e3 * p['zspring.L1']:g}", below),
         (head_end, frame_end, "spring", above),
         (frame_end, top, f"L2 = {1e3 * p['zspring.L2']:g}", above),
     ):
-        axes.annotate(text, (one + other) / 2, textcoords="offset points", fontsize=9, **side)
+        axes.annotate(text, (one + other) / 2, offset, textcoords="offset points", fontsize=9, ha=align)
     low = head[1] - 28
     axes.annotate("", (head[0], low), (top[0], low), arrowprops={"arrowstyle": "<->", "linewidth": 0.8})
     axes.text((head[0] + top[0]) / 2, low + 3, f"d = {1e3 * p['zspring.d']:g}", fontsize=9, ha="center")

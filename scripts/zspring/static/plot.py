@@ -27,7 +27,7 @@ def static_figure(loops: Sequence[Loop], parameters: Mapping[str, Value], title:
     amplitudes = sorted({loop.amplitude for loop in loops})
     # The loop that friction fills best shows most.
     dissipation = {a: max(loop.area / a**2 for loop in loops if loop.amplitude == a) for a in amplitudes}
-    fullest = max(dissipation, key=dissipation.get)
+    fullest = max(dissipation, key=dissipation.__getitem__)
 
     shown = [a for a in amplitudes if fullest / 4 <= a <= 4 * fullest]
     colors = dict(zip(shown, matplotlib.colormaps["plasma"](np.linspace(0, 0.85, len(shown)))))

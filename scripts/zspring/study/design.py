@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import ZSpringError
 from ..variables import Value
-from .settings import MOST_CASES, StudySettings
+from .settings import MOST_CASES, Range, StudySettings
 
 Case = dict[str, Value]  # values of the parameters that vary
 
@@ -24,8 +24,9 @@ def make_cases(settings: StudySettings) -> list[Case]:
                         cases, from which first and total order indices follow
     Raises ZSpringError if there are more than MOST_CASES.
     """
-    names, varied = list(settings.vary), list(settings.vary.values())
-    dimension = len(varied)
+    names, dimension = list(settings.vary), len(settings.vary)
+    varied = [given for given in settings.vary.values() if isinstance(given, tuple)]
+    spans = [given for given in settings.vary.values() if isinstance(given, Range)]
     count = {
         "grid": lambda: math.prod(map(len, varied)),
         "list": lambda: len(varied[0]),
@@ -47,7 +48,7 @@ def make_cases(settings: StudySettings) -> list[Case]:
 
         sampler = qmc.LatinHypercube(dimension, rng=np.random.default_rng(settings.seed))
         positions = sampler.random(settings.samples)
-    columns = [span.at(column).tolist() for span, column in zip(varied, positions.T)]
+    columns = [span.at(column).tolist() for span, column in zip(spans, positions.T)]
     return [dict(zip(names, row)) for row in zip(*columns)]
 
 

@@ -22,7 +22,7 @@ ADVANCE_TO_TIME = 1  # CV_NORMAL of cvode.h
 
 
 def _address(library: ctypes.CDLL, name: str) -> int:
-    return ctypes.cast(getattr(library, name), ctypes.c_void_p).value
+    return ctypes.cast(getattr(library, name), ctypes.c_void_p).value or 0
 
 
 # As functions of plain addresses, which compiled code can call.

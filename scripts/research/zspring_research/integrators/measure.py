@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from math import nan
+from typing import Any
 
 import numpy as np
 
@@ -22,10 +23,10 @@ STABILITY = {"RK45": 3.3066, "RK4": 2.7853}
 STIFF = ("LSODA", "Radau", "CVODE")
 
 HHT_STEPS = tuple(1e-3 * h for h in (8, 5.6, 4, 2.8, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.2, 0.14, 0.1))
-HHT_ALPHAS = (0.0, -0.1, -0.2, -0.3)
-RK4_STEPS = (20, 14, 10, 7, 5, 3.5, 2, 1.4, 0.99, 0.7)  # times the longest stable one
+HHT_ALPHAS: tuple[float, ...] = (0.0, -0.1, -0.2, -0.3)
+RK4_STEPS: tuple[float, ...] = (20, 14, 10, 7, 5, 3.5, 2, 1.4, 0.99, 0.7)  # times the longest stable one
 TOLERANCES = tuple(10 ** (-i / 2) for i in range(2, 13))
-ATOL_FACTORS = (1.0, 0.1, 0.01)
+ATOL_FACTORS: tuple[float, ...] = (1.0, 0.1, 0.01)
 INERTIAS = (7.5e-4, 2.5e-4, 7.5e-5, 2.5e-5, 1e-5, 3e-6, 1e-6)  # kg m2
 INERTIA_PERIODS = 2  # explicit methods take a minute for more at the least inertia
 
@@ -87,11 +88,12 @@ def to_row(run: tuple[Variant, Result]) -> list[object]:
 
 def from_row(row: Mapping[str, str]) -> tuple[Variant, Result]:
     """What `to_row` was given, by column name. Raises KeyError or ValueError for another row."""
-    kinds = {"str": str, "int": int, "float": lambda cell: float(cell or "nan")}
-    variant, result = (
-        kind(**{f.name: kinds[str(f.type)](row[COLUMNS[f.name]]) for f in fields(kind)}) for kind in (Variant, Result)
-    )
-    return variant, result
+    kinds: dict[str, Callable[[str], Any]] = {"str": str, "int": int, "float": lambda cell: float(cell or "nan")}
+
+    def values(kind: type[Variant | Result]) -> dict[str, Any]:
+        return {f.name: kinds[str(f.type)](row[COLUMNS[f.name]]) for f in fields(kind)}
+
+    return Variant(**values(Variant)), Result(**values(Result))
 
 
 def variants(parameters: Mapping[str, Value], periods: int, quick: bool) -> list[Variant]:
@@ -181,7 +183,7 @@ class Laboratory:
         frame, force = np.array(seen).T
         force -= self._parameters["static_force"]
         errors: Errors = problem.errors(times, frame, force, complex(real, imaginary))
-        return Result(seconds, steps, **asdict(errors))
+        return Result(seconds, int(steps), **asdict(errors))
 
 
 def _inertia(variant: Variant) -> dict[str, float]:

@@ -110,8 +110,8 @@ def inertia_ratios(runs: Runs, quantity: str, frequency: float) -> list[Ratios]:
     found = []
     for inertia in sorted({variant.inertia for variant in runs}, reverse=True):
         here = {variant: run for variant, run in runs.items() if variant.inertia == inertia}
-        choices = {name: cheapest(group, 1e-2, quantity, frequency) for name, group in by_method(here).items()}
-        choices = {name: choice for name, choice in choices.items() if choice}
+        found_by = {name: cheapest(group, 1e-2, quantity, frequency) for name, group in by_method(here).items()}
+        choices = {name: choice for name, choice in found_by.items() if choice}
         if FMU_METHOD in choices and "RK45" in choices:
             found.append(Ratios(inertia, choices[FMU_METHOD], choices))
     return found
@@ -158,15 +158,15 @@ def goal_lines(precision: Runs, ratios: list[Ratios], frequency: float) -> list[
         lines.append(f"goal: {goal}: {verdict}" + ("" if ratio is None else f", {ratio:.3g} times"))
 
     def ratio(method: str, target: float) -> float | None:
-        choice = cheapest(groups.get(method, {}), target, "H", frequency)
-        return choice.result.seconds / base[target].result.seconds if choice and base[target] else None
+        choice, own = cheapest(groups.get(method, {}), target, "H", frequency), base[target]
+        return choice.result.seconds / own.result.seconds if choice and own else None
 
     say("50 times less CPU than Dormand-Prince at an error of H of 1 %", ratio("RK45", 1e-2), 50)
     small = [row.time("RK45") for row in ratios if row.inertia == 1e-5]
     say("1000 times less at J = 1e-5 kg m2", small[0] if small else None, 1000)
     for target in base:
         known = {name: found for name in STIFF if (found := ratio(name, target)) is not None}
-        fastest = min(known, key=known.get, default=None)
+        fastest = min(known, key=known.__getitem__, default="")
         name = f" ({fastest})" if fastest else ""
         say(f"less CPU than the best stiff peer{name} at {target:g}", known.get(fastest), 1)
     return lines

@@ -84,7 +84,7 @@ def contact_force(
     variables = instance.variables
     bench = {"bench.frequency": frequency, "bench.acceleration": acceleration}
     instance.start({**parameters, **bench, **variables.parse_assignments(["drive=Bench"])})
-    (count,) = instance.get(["bench.steps_per_period"])
+    (count,) = map(int, instance.get(["bench.steps_per_period"]))
     step, begin = 1 / (frequency * count), SETTLING_PERIODS / frequency
     instance.step(0, begin)
     force = []
@@ -104,8 +104,9 @@ def head_position(
     variables = instance.variables
     parameters = {**parameters, "bench.frequency": frequency, **variables.parse_assignments(["drive=Force"])}
     instance.start(parameters)
-    static_force, count = instance.get(["static_force", "bench.steps_per_period"])
+    static_force, steps = instance.get(["static_force", "bench.steps_per_period"])
     instance.start(parameters, {"contact_force": static_force})
+    count = int(steps)
     step = 1 / (frequency * count)
     wave = static_force + amplitude * np.sin(2 * np.pi * np.arange(count + 1) / count)
     z = []

@@ -58,9 +58,9 @@ def jump_figure(
 
     for tangent, iteration in iterations.items():
         style = {"color": COLORS[tangent], "marker": MARKERS[tangent], "markersize": 4, "linewidth": 1.1}
-        number = np.arange(SHOWN + 1)
-        rates.plot(number, 1e3 * iteration.rates[: SHOWN + 1, 0], label=tangent, **style)
-        unbalance.semilogy(number, np.maximum(iteration.unbalance[: SHOWN + 1], 1e-16), label=tangent, **style)
+        numbers = np.arange(SHOWN + 1)
+        rates.plot(numbers, 1e3 * iteration.rates[: SHOWN + 1, 0], label=tangent, **style)
+        unbalance.semilogy(numbers, np.maximum(iteration.unbalance[: SHOWN + 1], 1e-16), label=tangent, **style)
     rates.set_yscale("symlog", linthresh=10)
     rates.set(xlabel="iteration", ylabel="rate of the rod  [mrad/s]", title="iterates")
     unbalance.set(xlabel="iteration", ylabel="unbalanced moment / Mf", title="what is left")
@@ -92,7 +92,7 @@ def convergence_figure(
             y = [getattr(work, quantity) for work in own]
             axes.loglog(x, y, label=label, linewidth=1.2, **style)
         axes.legend(fontsize=8)
-    amplitudes = sorted({work.amplitude for work in by_amplitude})
+    amplitudes = sorted({work.amplitude for work in by_amplitude if work.amplitude is not None})
     first.set_xticks(amplitudes, [f"{amplitude:g}" for amplitude in amplitudes])
     first.set_xticks([], minor=True)
     first.set(xlabel="amplitude  [m/s²]", ylabel="Newton iterations a step", title="by amplitude")

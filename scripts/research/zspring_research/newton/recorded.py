@@ -52,18 +52,18 @@ def record(
     names = variables.names("parameter", "calculatedParameter")
     used = dict(zip(names, instance.get(names)))
     period = 1 / frequency
-    (count,) = instance.get(["bench.steps_per_period"])
+    (count,) = map(int, instance.get(["bench.steps_per_period"]))
     step = period / count
     begin = settling_periods * period
     if settling_periods:
         instance.step(0, begin)
-    q, v = [], []
+    positions, velocities = [], []
     for i in range(count + 1):
         instance.step(begin + i * step, step)
-        q.append(instance.get(_POSITIONS))
+        positions.append(instance.get(_POSITIONS))
         head, upper, lower = instance.get(_VELOCITIES)
-        v.append([head, *instance.get_slopes(_RODS), upper, lower])
-    q, v = np.array(q), np.array(v)
+        velocities.append([head, *instance.get_slopes(_RODS), upper, lower])
+    q, v = np.array(positions), np.array(velocities)
     a = newmark_accelerations(q, v, step, used["solver.alpha"])
     return Recording(used, step, step * np.arange(count + 1), q, v, a)
 

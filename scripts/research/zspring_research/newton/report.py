@@ -33,7 +33,7 @@ def work_row(work: TangentWork) -> list[float | str]:
 
 def tables(by_amplitude: Sequence[TangentWork], by_tau: Sequence[TangentWork], errors: Sequence[Errors]) -> list[str]:
     """Lines of the three tables: work by amplitude, work by tau, errors by tau."""
-    amplitudes = sorted({work.amplitude for work in by_amplitude})
+    amplitudes = sorted({work.amplitude for work in by_amplitude if work.amplitude is not None})
     lines = [
         f"iterations a step (halved steps, %) by amplitude in m/s2, tau = {by_amplitude[0].tau:g} s",
         f"{'':<22}" + "".join(f"{a:>14g}" for a in amplitudes) + f"{'most':>6}{'discards':>10}{'time':>9}",
