@@ -6,9 +6,9 @@ python requirements.py pyproject.toml extras         of all extras
 
 import sys
 
-try:
+if sys.version_info >= (3, 11):
     import tomllib
-except ModuleNotFoundError:
+else:
     from pip._vendor import tomli as tomllib
 
 with open(sys.argv[1], "rb") as file:
