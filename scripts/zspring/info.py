@@ -13,6 +13,7 @@ from .errors import ZSpringError, did_you_mean
 from .fmu import CATENARY, installed_fmu
 from .options import fmu_option, opened
 from .parameter_sets import LINES, PANTOGRAPHS, describe_set, packaged_sets
+from .text_tables import aligned
 from .variables import Variables, parse, text
 
 
@@ -28,9 +29,7 @@ def variable_table(variables: Variables, names: Sequence[str] = ()) -> list[str]
             if not any(fnmatchcase(other, name) for other in known):
                 raise ZSpringError(f"no variable {name!r} in the FMU{did_you_mean(name, known)}")
         wanted = [variable for variable in variables if any(fnmatchcase(variable.name, name) for name in names)]
-    rows = [["name", "causality", "unit", "start", "allowed", "description"], *map(_row, wanted)]
-    widths = [max(map(len, column)) for column in zip(*rows)]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
+    return aligned([["name", "causality", "unit", "start", "allowed", "description"], *map(_row, wanted)])
 
 
 def _row(variable: ScalarVariable) -> list[str]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..line.result import LineResult
 from ..line.schemes import Coupling
+from ..text_tables import aligned
 
 STEPS = (0.5e-3, 1e-3, 2e-3, 5e-3)  # s
 
@@ -69,13 +70,10 @@ def compare_steps(
 
 
 def comparison_table(rows: Sequence[Comparison]) -> list[str]:
-    """Lines by scheme and step."""
-    lines = [f"{'':18s}{'error of the force, N':>22s}{'contact force, N':>22s}"]
-    lines.append(
-        f"{'coupling':10s}{'step':>8s}{'rms':>11s}{'largest':>11s}{'mean':>11s}{'deviation':>11s}{'time':>10s}"
-    )
+    """Lines by scheme and step: error of the contact force, its mean and deviation, all in N; time."""
+    lines = [["coupling", "step", "error, rms", "largest", "mean force", "deviation", "time"]]
     for i, row in enumerate(rows):
-        errors = f"{row.rms:11.3g}{row.largest:11.3g}" if i else f"{'reference':>22s}"
-        figures = f"{row.mean:11.2f}{row.deviation:11.2f}{row.elapsed:8.2f} s"
-        lines.append(f"{row.scheme:10s}{1e3 * row.step:5g} ms{errors}{figures}")
-    return lines
+        errors = [f"{row.rms:.3g} N", f"{row.largest:.3g} N"] if i else ["reference", ""]
+        figures = [f"{row.mean:.2f} N", f"{row.deviation:.2f} N", f"{row.elapsed:.2f} s"]
+        lines.append([row.scheme, f"{1e3 * row.step:g} ms", *errors, *figures])
+    return aligned(lines, right=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..line.journey import LineExtent
 from ..line.result import LineResult
 from ..line.statistics import FIGURES, Section, statistics
+from ..text_tables import aligned
 
 SHOWN = (
     "mean_force",
@@ -33,11 +34,9 @@ def summary(result: LineResult, line: LineExtent) -> list[str]:
     count = result.position.shape[1]
     sections = [evaluated(result, i, line) for i in range(count)]
     found = [statistics(result.series(i), sections[i]) for i in range(count)]
-    width = max(len(FIGURES[name][0]) for name in SHOWN)
     where = dict.fromkeys(str(section or "the whole run") for section in sections)
-    lines = [f"0-20 Hz, over {' and '.join(where)}"]
+    rows = []
     for name in SHOWN:
         label, unit, digits = FIGURES[name]
-        values = "".join(f"{figures[name]:10.{digits}f}" for figures in found)
-        lines.append(f"{label:{width}s} {values} {unit}")
-    return lines
+        rows.append([label, *(f"{figures[name]:.{digits}f}" for figures in found), unit])
+    return [f"0-20 Hz, over {' and '.join(where)}", *aligned(rows, right=True)]

@@ -10,6 +10,7 @@ from ..fmu import Fmu
 from ..line.mean_force import mean_force
 from ..line.statistics import FIGURES, Statistics
 from ..parameter_sets import describe_set
+from ..text_tables import aligned
 from ..variables import text
 from .edition import DEVIATION_SHARE, Case, Judgement, sets_of
 from .frf import FrfComparison
@@ -156,14 +157,9 @@ def departures(judged: Mapping[str, Mapping[str, Sequence[Judgement]]]) -> str:
 
 
 def as_lines(table: Table) -> list[str]:
-    """The table as text, columns aligned to the right."""
+    """The table as text, under its caption."""
     rows = [list(table.header), *([cell.text for cell in row] for row in table.cells)]
-    widths = [max(map(len, column)) for column in zip(*rows)]
-    lines = [table.caption] if table.caption else []
-    for first, *rest in rows:
-        cells = [first.ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(rest, widths[1:]))]
-        lines.append("  ".join(cells).rstrip())
-    return lines
+    return [*([table.caption] if table.caption else []), *aligned(rows, right=True)]
 
 
 def verdict(name: str, judged: Mapping[str, Sequence[Judgement]], unit: str | None = None) -> str:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ..bench.curves import Curve
 from ..fmu import Fmu
+from ..text_tables import aligned
 from .fit import Fit
 from .problem import Problem
 
@@ -106,14 +105,6 @@ def residual_table(problem: Problem, fit: Fit) -> list[str]:
             f"largest {np.max(np.abs(force - measured)):.3g} N"
         )
     return lines
-
-
-def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows as lines with their cells below each other."""
-    width = max(map(len, rows))
-    full = [[*row, *[""] * (width - len(row))] for row in rows]
-    widths = [max(map(len, column)) for column in zip(*full)]
-    return ["  ".join(cell.ljust(w) for cell, w in zip(row, widths)).rstrip() for row in full]
 
 
 def _with_error(value: float, error: float) -> str:

@@ -14,6 +14,7 @@ from ..fmu import Fmu
 from ..heads import file_head, synthetic_note
 from ..interrupt import Interrupted, stop_on_interrupt
 from ..tables import write_table
+from ..text_tables import aligned
 from ..variables import Value, text
 from .plot import LAW_STYLES, static_figure
 
@@ -85,14 +86,12 @@ def _table(loops: Sequence[Loop], used: Mapping[str, Value]) -> list[str]:
     amplitudes = sorted({amplitude for _, _, amplitude in found})
     rates = sorted({rate for _, rate, _ in found})
     locked, free = used["zspring.k_locked"], used["zspring.k_free"]
-    lines = [
-        f"equivalent stiffness in N/mm; {1e-3 * locked:.3f} with locked, {1e-3 * free:.3f} with free rods",
-        f"{'amplitude, mm':<22}" + "".join(f"{1e3 * a:>7g}" for a in amplitudes),
-    ]
+    rows = [["amplitude, mm", *(f"{1e3 * a:g}" for a in amplitudes)]]
     for law in LAW_STYLES:
         for rate in rates:
-            cells = "".join(f"{1e-3 * found[law, rate, a]:>7.3f}" for a in amplitudes)
-            lines.append(f"{f'{law}, {1e3 * rate:g} mm/s':<22}" + cells)
+            rows.append([f"{law}, {1e3 * rate:g} mm/s", *(f"{1e-3 * found[law, rate, a]:.3f}" for a in amplitudes)])
+    title = f"equivalent stiffness in N/mm; {1e-3 * locked:.3f} with locked, {1e-3 * free:.3f} with free rods"
+    lines = [title, *aligned(rows, right=True)]
     if len(rates) > 1:
         spread = {
             law: max(

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..tables import write_table
+from ..text_tables import aligned
 from .design import unit_problem
 from .evaluations import FrfQuantity, column
 from .files import STATUS
@@ -63,17 +64,15 @@ def envelopes(quantity: FrfQuantity, rows: Rows) -> list[Envelope]:
 
 def spread_table(scalars: Sequence[str], rows: Rows) -> list[str]:
     """Lines with smallest, median and largest value of each scalar result, and how many cases have one."""
-    width = max(map(len, scalars))
-    lines = [f"{'':{width}s}  {'min':>10s} {'median':>10s} {'max':>10s}   cases"]
+    table = [["", "min", "median", "max", "cases"]]
     for name in scalars:
         numbers = values(rows, name)
         numbers = numbers[np.isfinite(numbers)]
         if numbers.size:
-            cells = " ".join(f"{number:10.5g}" for number in np.percentile(numbers, (0, 50, 100)))
-            lines.append(f"{name:{width}s}  {cells} {numbers.size:7d}")
+            table.append([name, *(f"{n:.5g}" for n in np.percentile(numbers, (0, 50, 100))), str(numbers.size)])
         else:
-            lines.append(f"{name:{width}s}  no case has a value")
-    return lines
+            table.append([name, "no case has a value"])
+    return aligned(table, right=True)
 
 
 def sobol_indices(settings: StudySettings, scalars: Sequence[str], rows: Rows) -> list[SobolIndices]:
@@ -102,16 +101,9 @@ def incomplete_blocks(settings: StudySettings, rows: Rows) -> int:
 
 def sobol_table(settings: StudySettings, found: Sequence[SobolIndices]) -> list[str]:
     """Lines with first and total order index by result and parameter."""
-    names = list(settings.vary)
-    width = max(len("first / total order"), *(len(indices.column) for indices in found))
-    widths = [max(13, len(name)) for name in names]
-    lines = ["  ".join([f"{'first / total order':{width}s}", *(f"{n:>{w}s}" for n, w in zip(names, widths))])]
-    for indices in found:
-        cells = (
-            f"{f'{first:.2f} / {total:.2f}':>{w}s}" for first, total, w in zip(indices.first, indices.total, widths)
-        )
-        lines.append("  ".join([f"{indices.column:{width}s}", *cells]))
-    return lines
+    rows = [["first / total order", *settings.vary]]
+    rows += [[i.column, *(f"{a:.2f} / {b:.2f}" for a, b in zip(i.first, i.total))] for i in found]
+    return aligned(rows, right=True)
 
 
 def write_sobol(path: Path, head: Mapping[str, str], settings: StudySettings, found: Sequence[SobolIndices]) -> None:
