@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import threading
 from dataclasses import replace
 
@@ -189,8 +190,13 @@ class Recorder:
         self.targets.clear()
         self.calls.clear()
 
+    def set(self, values) -> None:
+        self._frequency = values["bench.frequency"]
+
     def get(self, names):
-        return [self._step for _ in names]
+        """The bench's grid, as model and interface tell it: at least 16 steps in a period, none above solver.step."""
+        assert names == ["bench.steps_per_period"]
+        return [max(16, math.ceil(1 / (self._frequency * self._step) - 1e-9))]
 
     refusals = contextlib.nullcontext
 
