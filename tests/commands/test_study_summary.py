@@ -30,11 +30,9 @@ from zspring.study.report import (
 )
 from zspring.study.settings import Range, StudySettings
 
-RANGE = ONE_TO_TWO
+RANGE = Range.model_validate({"from": 1, "to": 2})
 TWO = StudySettings("sobol", 8, 1, {"m1": RANGE, "m2": RANGE}, {}, (StaticQuantity((0.01,)),))
 BLOCK = 4  # cases of two parameters
-
-ONE_TO_TWO = Range.model_validate({"from": 1, "to": 2})
 
 
 def rows_of(y: np.ndarray) -> dict[int, dict[str, str]]:
@@ -67,8 +65,8 @@ def test_blocks_with_a_hole_are_left_out_whole_and_no_others():
 @pytest.mark.parametrize(
     "design, samples, vary, count",
     [
-        ("sobol", 2**18, {"m1": ONE_TO_TWO, "m2": ONE_TO_TWO}, 2**20),
-        ("latin-hypercube", 1_000_001, {"m1": ONE_TO_TWO}, 1_000_001),
+        ("sobol", 2**18, {"m1": RANGE, "m2": RANGE}, 2**20),
+        ("latin-hypercube", 1_000_001, {"m1": RANGE}, 1_000_001),
         ("grid", 0, {"m1": (1.0,) * 1001, "m2": (1.0,) * 1000}, 1_001_000),
         ("list", 0, {"m1": (1.0,) * 1_000_001}, 1_000_001),
     ],
