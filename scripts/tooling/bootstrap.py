@@ -37,36 +37,19 @@ PROBES = PROBES_BUILD / "bin"
 BROWSER = ROOT / "tests" / "browser"
 ZIG = "python-zig c++"  # from the package ziglang, for systems without a C++ compiler
 
+DESCRIPTIONS = ["modelDescription.xml", "modelDescription.catenary.xml"]
+PROBE_SOURCES = [*DESCRIPTIONS, "CMakeLists.txt", "fmu_src", "tests/native"]
 PACKAGE_SOURCES = [
+    *DESCRIPTIONS,
     "CMakeLists.txt",
     "LICENSE",
     "README.md",
-    "modelDescription.xml",
-    "modelDescription.catenary.xml",
     "pyproject.toml",
     "fmu_src",
     "resources",
     "scripts/zspring",
 ]
-PROBE_SOURCES = ["CMakeLists.txt", "modelDescription.xml", "modelDescription.catenary.xml", "fmu_src", "tests/native"]
 RESEARCH = "scripts/research"
-
-# Prints the requirements in pyproject.toml, one a line; runs in .venv, whose pip has tomli for Python 3.10.
-READ_REQUIREMENTS = """
-import sys
-try:
-    import tomllib
-except ModuleNotFoundError:
-    from pip._vendor import tomli as tomllib
-with open(sys.argv[1], "rb") as file:
-    table = tomllib.load(file)
-if sys.argv[2:] == ["extras"]:
-    groups = table["project"]["optional-dependencies"].values()
-else:
-    groups = [table["build-system"]["requires"], table["project"]["dependencies"]]
-    groups += [table["dependency-groups"][name] for name in sys.argv[2:]]
-print("\\n".join(requirement for group in groups for requirement in group))
-"""
 
 
 def environment() -> dict[str, str]:
@@ -152,7 +135,7 @@ def make_environment(runner: Runner, keep: bool) -> str:
 def install_requirements(runner: Runner, *groups: str) -> None:
     """Install what pyproject.toml requires: always and in these dependency groups, or all "extras"."""
     listing = subprocess.run(
-        [PYTHON, "-c", READ_REQUIREMENTS, ROOT / "pyproject.toml", *groups],
+        [PYTHON, TOOLING / "requirements.py", ROOT / "pyproject.toml", *groups],
         env=environment(),
         check=True,
         capture_output=True,
@@ -289,8 +272,8 @@ def set_up(with_probes: bool, groups: Sequence[str]) -> None:
 def run(command: list[str], with_probes: bool = False, groups: Sequence[str] = (), folder: Path | None = None) -> None:
     """Set up, then become `command`, whose first item is a program of .venv; `folder` is where to start it.
 
-    With probes it finds the folder of the C++ test programs in the environment variable ZSPRING_PROBES. `groups`
-    are dependency groups of pyproject.toml to install as well.
+    With probes it finds the folder of the C++ test programs in the environment variable ZSPRING_PROBES, and the
+    modules of tests/helpers. `groups` are dependency groups of pyproject.toml to install as well.
     """
     try:
         set_up(with_probes, groups)
@@ -300,7 +283,7 @@ def run(command: list[str], with_probes: bool = False, groups: Sequence[str] = (
         sys.exit("set-up: interrupted; start it again to go on")
     variables = environment()
     if with_probes:
-        variables["ZSPRING_PROBES"] = str(PROBES)
+        variables |= {"ZSPRING_PROBES": str(PROBES), "PYTHONPATH": str(ROOT / "tests" / "helpers")}
     program = [str(BIN / command[0]), *command[1:]]
     if folder:
         os.chdir(folder)

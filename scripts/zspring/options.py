@@ -6,8 +6,10 @@ import importlib.resources
 import math
 import os
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
 
 import click
@@ -48,14 +50,28 @@ class Numbers(click.ParamType):
         return [round(start + i * step, 12) for i in range(math.floor((stop - start) / step + 1e-9) + 1)]
 
 
-fmu_option = click.option(
-    "--fmu",
-    "fmu_path",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Use this FMU instead of the one in the package.",
-)
-line_fmu_option = click.option("--line-fmu", type=click.Path(path_type=Path), metavar="FILE", help="Of the catenary.")
+FILE = click.Path(path_type=Path, dir_okay=False)
+POSITIVE = click.FloatRange(min=0, min_open=True)
+
+
+def option(*names: str, help: str, default=None, kind=float, metavar: str | None = None):
+    """click's option, which shows its default unless `help` tells it in words."""
+    shown = default is not None and "[default: " not in help
+    return click.option(*names, type=kind, default=default, show_default=shown, metavar=metavar, help=help)
+
+
+def numbers(name: str, default, help: str):
+    """An option with a list of numbers."""
+    return option(name, default=default, kind=Numbers(), metavar="LIST", help=help)
+
+
+def choice(*names: str, of: Iterable[str], default: str | None = None, help: str):
+    """An option with one of these texts."""
+    return option(*names, default=default, kind=click.Choice(list(of)), help=help)
+
+
+fmu_option = option("--fmu", "fmu_path", kind=FILE, metavar="FILE", help="Use this FMU, not the one in the package.")
+line_fmu_option = option("--line-fmu", kind=FILE, metavar="FILE", help="Use this FMU of the catenary.")
 set_option = click.option(
     "--set",
     "assignments",
@@ -64,44 +80,56 @@ set_option = click.option(
     help="Set a parameter of the FMU, in its unit or by the name of an enumeration's item; repeatable. "
     "`zspring info` lists them.",
 )
-parameters_option = click.option(
+parameters_option = option(
     "--parameters",
     "parameter_set",
+    kind=str,
     metavar="NAME|FILE",
     help="Set the parameters of a pantograph: the name of a set (`zspring info --sets` lists them) or an "
     "SSV file of SSP 1.0. --set goes before it.",
 )
-format_option = click.option(
-    "--format",
-    "suffix",
-    type=click.Choice(["png", "svg"]),
-    default="png",
-    show_default=True,
-    help="Format of the figure.",
-)
+format_option = choice("--format", "suffix", of=["png", "svg"], default="png", help="Format of the figure.")
+
+
+@dataclass(frozen=True)
+class Pantograph:
+    """What --fmu, --parameters and --set choose."""
+
+    fmu_path: Path | None
+    parameter_set: str | None
+    assignments: Sequence[str]
+
+    @contextmanager
+    def opened(self, but_not: Sequence[str] = ()) -> Iterator[tuple[Fmu, dict[str, Value]]]:
+        """The FMU and the parameters; `but_not` as in chosen_parameters."""
+        with opened(self.fmu_path) as fmu:
+            yield fmu, chosen_parameters(fmu, self.parameter_set, self.assignments, but_not)
+
+
+def pantograph_options(command: Callable) -> Callable:
+    """--parameters, --set and --fmu, which the command gets as one `pantograph`."""
+
+    @parameters_option
+    @set_option
+    @fmu_option
+    @wraps(command)
+    def with_pantograph(*, fmu_path, parameter_set, assignments, **others):
+        return command(pantograph=Pantograph(fmu_path, parameter_set, assignments), **others)
+
+    return with_pantograph
 
 
 def jobs_option(what: str):
     """--jobs N, by default the number of processors; `what` is done at a time."""
-    return click.option(
-        "--jobs",
-        type=click.IntRange(min=1),
-        default=lambda: os.cpu_count() or 1,
-        metavar="N",
-        help=f"{what}  [default: number of processors]",
-    )
+    most, kind = "  [default: number of processors]", click.IntRange(min=1)
+    return option("--jobs", default=lambda: os.cpu_count() or 1, kind=kind, metavar="N", help=what + most)
 
 
 def output_option(default: str = "", described: str = ""):
     """--output DIR with this default; `described` says in words what one is that the settings decide."""
-    return click.option(
-        "--output",
-        type=click.Path(path_type=Path, file_okay=False),
-        default=Path(default) if default else None,
-        show_default=bool(default),
-        metavar="DIR",
-        help="Folder of the results." + (f"  [default: {described}]" if described else ""),
-    )
+    text = "Folder of the results." + (f"  [default: {described}]" if described else "")
+    folder = click.Path(path_type=Path, file_okay=False)
+    return option("--output", default=Path(default) if default else None, kind=folder, metavar="DIR", help=text)
 
 
 def copy_examples(folder: Path, files: Mapping[str, str]) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from zspring.bench.measured import Curve, Source
+from zspring.bench.curves import Curve, Source
 from zspring.en50318.frf import band_errors, compare_frf
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu

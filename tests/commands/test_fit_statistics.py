@@ -8,12 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from zspring.bench.measured import Curve
+from zspring.bench.curves import Curve
 from zspring.bench.static_test import StaticTest
 from zspring.fmu import Fmu
 from zspring.identify.fit import Fit, statistics
 from zspring.identify.problem import Answer, Problem
-from zspring.identify.report import correlation_table, doubts, parameter_table, residual_table
+from zspring.identify.report import (
+    correlation_table,
+    doubts,
+    magnitude_error,
+    parameter_table,
+    phase_error,
+    residual_table,
+)
 from zspring.identify.settings import Free, Settings, Static
 
 # A straight line a + b t through five points: five residuals, two parameters.
@@ -275,3 +282,10 @@ def test_wide_positive_ranges_are_searched_on_a_logarithmic_scale(low, high, is_
     assert free.value(0.5) == pytest.approx(middle, rel=1e-12) and free.x(middle) == pytest.approx(0.5)
     assert (free.value(0), free.value(1), free.value(-0.1), free.value(1.1)) == (low, high, low, high)
     assert (free.value(0.5001) - free.value(0.4999)) / 2e-4 == pytest.approx(free.slope(0.5), rel=1e-6)
+
+
+def test_errors_that_are_written_are_those_of_the_fit_against_the_measurement():
+    curve = problem_of().curves[0]
+    fitted = MEASURED * np.array([1.03, 0.96, 1.0]) * np.exp(1j * np.radians([0, 1, -2]))
+    np.testing.assert_allclose(magnitude_error(curve, fitted), [0.03, -0.04, 0], atol=1e-12)
+    np.testing.assert_allclose(phase_error(curve, fitted), [0, 1, -2], atol=1e-12)

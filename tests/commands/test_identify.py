@@ -15,7 +15,7 @@ from fmpy.ssp.ssd import read_ssv
 
 from commands import receptances, start, table, zspring
 from linear import PUBLISHED, LinearPantograph, ZSpringLinear
-from zspring.bench.measured import Curve
+from zspring.bench.curves import Curve
 from zspring.bench.model import BenchModel
 from zspring.bench.static_test import StaticTest
 from zspring.fmu import Fmu

@@ -10,7 +10,8 @@ import pytest
 import pyuff
 
 from linear import PUBLISHED, LinearPantograph
-from zspring.bench.measured import Source, in_band, read_curves, sign_warning
+from zspring.bench.curves import Source, in_band, sign_warning
+from zspring.bench.measured import read_curves
 from zspring.bench.static_test import read_static_test
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu

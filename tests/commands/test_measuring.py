@@ -11,10 +11,10 @@ import pytest
 from scipy.integrate import quad
 
 from linear import PUBLISHED, LinearPantograph
+from zspring.bench.curves import Curve
 from zspring.bench.fmu_bench import FmuBench
 from zspring.bench.input_bench import InputBench
 from zspring.bench.measure import FrfSettings, left_out, measure, settle, sweeps
-from zspring.bench.measured import Curve
 from zspring.bench.model import BenchModel
 from zspring.bench.resonances import LEAST_STEP, extremes
 from zspring.bench.responses import acceleration_of, as_quantity, phase_degrees, response_of

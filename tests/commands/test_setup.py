@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import os
+import runpy
+import subprocess
 import sys
 from pathlib import Path
 
@@ -64,3 +68,24 @@ def test_a_stamp_without_dependencies_is_completed(bootstrap):
     bootstrap.set_up(with_probes=False, groups=())
     assert bootstrap.stages == ["environment", "package", "package"]
     assert bootstrap.read_stamp()["dependencies"] == ["numpy"]
+
+
+@pytest.mark.parametrize("name", ["benchmark", "trust", "mutants"])
+def test_what_a_script_starts_finds_its_modules(bootstrap, monkeypatch, name):
+    """Each file of tests/measurements that a script names, in the environment that it is started in."""
+    started = []
+    monkeypatch.setattr(bootstrap, "set_up", lambda *_: None)
+    monkeypatch.setattr(bootstrap.subprocess, "run", lambda command, env: started.append((command, env)) or sys.exit(0))
+    monkeypatch.setattr(bootstrap.os, "execve", lambda program, command, env: started.append((command, env)))
+    monkeypatch.setattr(sys, "argv", [name])
+    with contextlib.suppress(SystemExit):  # on Windows
+        runpy.run_path(str(SCRIPTS / name))
+    monkeypatch.undo()
+    (((_, file), environment),) = started
+    paths = os.pathsep.join(filter(None, [environment.get("PYTHONPATH"), os.environ.get("PYTHONPATH")]))
+    load = f"import runpy, sys; sys.path.insert(0, {str(Path(file).parent)!r}); runpy.run_path({file!r})"
+    done = subprocess.run(
+        [sys.executable, "-c", load], env={**environment, "PYTHONPATH": paths}, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert environment["ZSPRING_PROBES"]

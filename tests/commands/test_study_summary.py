@@ -12,6 +12,7 @@ from commands import table, zspring
 from zspring.bench.measure import FrfSettings
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
+from zspring.study.design import make_cases
 from zspring.study.evaluations import FrfQuantity, StaticQuantity, column
 from zspring.study.files import StudyRecord
 from zspring.study.plot import envelope_figure
@@ -59,6 +60,20 @@ def test_blocks_with_a_hole_are_left_out_whole_and_no_others():
     (whole,) = sobol_indices(TWO, ["y"], rows_of(y))
     assert np.all(whole.first != found.first)
     assert incomplete_blocks(TWO, rows_of(holes)) == 2 and incomplete_blocks(TWO, rows_of(y)) == 0
+
+
+@pytest.mark.parametrize(
+    "design, samples, vary, count",
+    [
+        ("sobol", 2**18, {"m1": Range(1, 2), "m2": Range(1, 2)}, 2**20),
+        ("latin-hypercube", 1_000_001, {"m1": Range(1, 2)}, 1_000_001),
+        ("grid", 0, {"m1": (1.0,) * 1001, "m2": (1.0,) * 1000}, 1_001_000),
+        ("list", 0, {"m1": (1.0,) * 1_000_001}, 1_000_001),
+    ],
+)
+def test_a_study_of_more_than_a_million_cases_is_refused_before_it_is_made(design, samples, vary, count):
+    with pytest.raises(ZSpringError, match=f"{count} cases: a study has at most 1000000"):
+        make_cases(StudySettings(design, samples, 1, vary, {}, TWO.quantities))
 
 
 def test_what_does_not_vary_or_is_in_one_block_only_has_no_index():

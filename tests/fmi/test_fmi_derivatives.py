@@ -57,6 +57,34 @@ def differences(p: Pantograph, outputs: list[str], name: str, delta: float, size
     return (ends[0] - ends[1]) / (2 * delta)
 
 
+@pytest.mark.parametrize("wire", [0.0, 0.1])
+@pytest.mark.parametrize("drive", ["Force", "Displacement", "Wire"])
+def test_derivatives_before_the_first_step_are_those_of_the_state_of_rest(pantograph, outputs, drive, wire):
+    """Of all outputs by all inputs of the drive, with the wire at the head and far above it."""
+    p = pantograph({"drive": drive, "wire_height": wire}, initialize=False)
+    p.slave.setupExperiment()
+    p.slave.enterInitializationMode()
+    inputs = [DRIVES[drive][0], *(f"uplift.{m}" for m in ("head", "upper_frame", "lower_frame"))]
+
+    references = [p.reference(name) for name in outputs]
+    moved = 0
+    for name in inputs:
+        delta, value, ends = 1e-6, p[name], []
+        for shifted in (value + delta, value - delta):
+            p[name] = shifted
+            ends.append(p.reals(outputs))
+        p[name] = value
+        expected = (ends[0] - ends[1]) / (2 * delta)
+        found = p.slave.getDirectionalDerivative(references, [p.reference(name)], [1.0])
+        np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6, err_msg=name)
+        moved += np.any(expected != 0)
+    assert moved >= 1
+    if drive == "Wire":
+        index = outputs.index("contact.force")
+        by_height = p.slave.getDirectionalDerivative(references, [p.reference("wire_height")], [1.0])[index]
+        assert by_height == (-p["contact.k"] if wire == 0.0 else 0.0)
+
+
 @pytest.mark.parametrize("size", [0.001, 0.002, 0.05])
 @pytest.mark.parametrize("friction", ["Regularized", "Coulomb", "Free", "Locked"])
 @pytest.mark.parametrize("drive", DRIVES)

@@ -113,6 +113,14 @@ def test_each_span_is_evaluated_for_itself():
     assert statistics(force, MIDDLE)["mean_force"] == pytest.approx(145, abs=0.1)
 
 
+def test_a_section_may_be_all_of_the_series_but_no_more():
+    force = series(lambda t: 100.0 + 10 * (t >= 9))  # the tenth span of 70 m alone
+    assert statistics(force, Section(1, 10, 70.0))["mean_force"] == pytest.approx(101, abs=0.2)
+    for section in Section(1, 10, 70.0, start=-0.01), Section(1, 10, 70.0, start=0.01):
+        with pytest.raises(ZSpringError, match="the series has 0 to 700 m"):
+            statistics(force, section)
+
+
 def test_uplift_is_that_of_supports_in_the_section_and_its_ends():
     time = np.arange(10001) / 1000
     peaks = {"a": 0.090, "b": 0.040, "c": 0.055, "d": 0.080}
@@ -139,7 +147,20 @@ def test_spans_outside_the_line_are_refused():
         statistics(without, MIDDLE)
 
 
-@pytest.mark.parametrize(("count", "step", "message"), [(100, 1e-3, "too short"), (1000, 0.03, "sample step")])
+@pytest.mark.parametrize(
+    ("count", "step", "message"),
+    [
+        (100, 1e-3, "too short"),
+        (249, 1e-3, "0.249 s are too short for 20 Hz: at least 0.25 s"),
+        (1000, 0.03, "sample step"),
+        (1000, 0.02, "sample step 0.02 s: must be below 0.02 s"),
+    ],
+)
 def test_the_filter_refuses_what_it_cannot_filter(count, step, message):
     with pytest.raises(ZSpringError, match=message):
         low_pass(np.ones(count), step)
+
+
+@pytest.mark.parametrize(("count", "step"), [(250, 1e-3), (1000, 0.0199)])
+def test_the_filter_takes_what_is_just_enough(count, step):
+    assert low_pass(np.full(count, 7.0), step) == pytest.approx(np.full(count, 7.0))

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from zspring.bench.measured import Curve
+from zspring.bench.curves import Curve
 from zspring.en50318 import report
 from zspring.en50318.edition import Edition, judge
 from zspring.en50318.frf import FrfComparison, band_errors

@@ -26,6 +26,7 @@ from typing import NamedTuple
 
 from tqdm import tqdm
 
+from commands import begin, end_all
 from paths import ROOT
 from zspring.fmu import CATENARY, PANTOGRAPH, installed_fmu
 
@@ -131,7 +132,7 @@ def python_variants(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
             yield node, ast.unparse(ast.fix_missing_locations(swapped))
         case ast.Expr(value=ast.Call()) | ast.Raise():
             yield node, "pass"
-        case ast.Return() if node.value is not None:
+        case ast.Return() if node.value and ast.unparse(node.value) != "None":
             yield node, "return None"
 
 
@@ -153,7 +154,7 @@ def drawn(only: str, count: int, seed: int) -> list[Fault]:
         name = path.relative_to(ROOT).as_posix()
         if fnmatch(name, only) and not any(fnmatch(name, pattern) for pattern in LEFT_OUT):
             text, places = path.read_text("utf-8"), python_faults if name.endswith(".py") else cpp_faults
-            faults += [Fault(name, text, *place) for place in places(text)]
+            faults += [Fault(name, text, *place) for place in places(text) if text[place[0] : place[1]] != place[2]]
     return random.Random(seed).sample(faults, min(count, len(faults)))
 
 
@@ -193,13 +194,13 @@ class Clone:
         """The first test that fails of these, or of all; None if none does."""
         chosen = [*tests, "-n", "0"] if tests else []
         try:
-            done = self._run("-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-k", NOT_THESE, *chosen)
+            status, printed = self._run("-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-k", NOT_THESE, *chosen)
         except subprocess.TimeoutExpired:
             return "no end"
-        if done.returncode in (0, 5):  # 5: no test was chosen
+        if status in (0, 5):  # 5: no test was chosen
             return None
-        found = re.search(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", done.stdout, re.MULTILINE)
-        return found[1] if found else (done.stdout.strip().splitlines() or ["nothing ran"])[-1]
+        found = re.search(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", printed, re.MULTILINE)
+        return found[1] if found else (printed.strip().splitlines() or ["nothing ran"])[-1]
 
     def _build(self, fault: Fault | None) -> bool:
         """Whether the C++ sources, with this fault in them, can be compiled; then FMUs and probes are of them."""
@@ -207,7 +208,7 @@ class Clone:
         if not build.exists():
             own = ["-DZSPRING_TESTS=ON", f"-DPython3_EXECUTABLE={sys.executable}"]
             self._run("-m", "cmake", "-S", self.folder, "-B", build, "-G", "Ninja", *own)
-        if self._run("-m", "cmake", "--build", build, "--target", "all", "probes").returncode:
+        if self._run("-m", "cmake", "--build", build, "--target", "all", "probes")[0]:
             return False
         for model in (PANTOGRAPH, CATENARY):
             shutil.copy2(build / f"{model}.fmu", self.package)
@@ -225,10 +226,15 @@ class Clone:
         near = [path for word in words for path, text in texts.items() if re.search(word, text)]
         return [str(path.relative_to(self.folder)) for path in dict.fromkeys(near)]
 
-    def _run(self, *arguments: object) -> subprocess.CompletedProcess:
-        words = [sys.executable, *map(str, arguments)]
-        own = {"cwd": self.folder, "env": self.environment, "timeout": LONGEST}
-        return subprocess.run(words, capture_output=True, text=True, **own)
+    def _run(self, *arguments: object) -> tuple[int, str]:
+        """Status and output of Python with these arguments; nothing of it runs on, whatever happens."""
+        words, own = [sys.executable, *map(str, arguments)], {"cwd": self.folder, "env": self.environment, "text": True}
+        process = begin(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **own)
+        try:
+            printed, _ = process.communicate(timeout=LONGEST)
+            return process.returncode, printed
+        finally:
+            end_all()
 
 
 def main() -> None:

@@ -19,8 +19,8 @@ from fmpy import simulate_fmu
 from release_tools import ROOT, tool
 
 from client_runs import RUNS, Run
-from zspring.export import copy_without_enumerations
 from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
+from zspring.plain_fmu import copy_without_enumerations
 
 each_run = pytest.mark.parametrize("run", RUNS.values(), ids=RUNS)
 TOOLS = ROOT / "build" / "clients"  # kept from one run to the next

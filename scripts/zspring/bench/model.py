@@ -13,9 +13,9 @@ import numpy as np
 
 from ..fmu import FmuError, Instance
 from ..variables import Value
+from .curves import Curve
 from .fmu_bench import FmuBench
 from .measure import FAILED, FrfSettings, settle
-from .measured import Curve
 from .static_test import StaticTest
 
 Periods = tuple[int, ...]  # for each point of a curve

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import ZSpringError, missing_extra
 from ..units import UnitError, conversion, offered
-from .measured import Curve
+from .curves import Curve
 from .responses import Response
 
 FRF = 4  # function type

@@ -8,12 +8,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..figures import new_figure
-from ..line.result import LineResult
+from ..figures import legend_beside, new_figure
+from ..line.result import SLIPPING, LineResult
 from .compare import Comparison
 
 COLOURS = ("tab:blue", "tab:orange")
-SLIPPING = 0.99  # share of Mf from which a joint is drawn as slipping; the tanh law creeps below it
 
 
 def line_figure(result: LineResult, filtered: np.ndarray | None, title: str) -> Figure:
@@ -51,7 +50,7 @@ def _draw_force(axes: Axes, result: LineResult, filtered: np.ndarray | None) -> 
     axes.set_ylabel("contact force  [N]")
     if filtered is not None:
         axes.set_ylim(bottom=min(0.0, filtered.min()))
-        _legend(axes)
+        legend_beside(axes)
 
 
 def _draw_heights(axes: Axes, result: LineResult) -> None:
@@ -62,7 +61,7 @@ def _draw_heights(axes: Axes, result: LineResult) -> None:
             position, 1e3 * result.head_height[:, i], color="0.2", linewidth=0.8, linestyle="--", label=f"{name}head"
         )
     axes.set_ylabel("height  [mm]")
-    _legend(axes)
+    legend_beside(axes)
 
 
 def _draw_friction(axes: Axes, result: LineResult) -> None:
@@ -83,16 +82,12 @@ def _draw_friction(axes: Axes, result: LineResult) -> None:
         )
     axes.set_ylim(-1.5, 1.15)
     axes.set_ylabel("friction moment\n/ Mf")
-    _legend(axes)
+    legend_beside(axes)
 
 
 def _names(result: LineResult) -> Sequence[str]:
     count = result.position.shape[1]
     return [""] if count == 1 else [f"pantograph {i + 1}, " for i in range(count)]
-
-
-def _legend(axes: Axes) -> None:
-    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
 
 
 def comparison_figure(rows: Sequence[Comparison], title: str) -> Figure:

@@ -7,10 +7,10 @@ import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
 
-from ..export import copy_without_enumerations
 from ..fmu import Fmu
 from ..line.run import LineRun
 from ..parameter_sets import write_set
+from ..plain_fmu import copy_without_enumerations
 
 _SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
 _SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..bench.measured import Curve, Source, in_band, read_curves
+from ..bench.curves import Curve, Source, in_band
+from ..bench.measured import read_curves
 from ..bench.model import BenchModel
 from ..errors import ZSpringError
 from ..fmu import Fmu

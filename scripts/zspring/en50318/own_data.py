@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..bench.measured import Source
+from ..bench.curves import Source
 from ..fmu import Fmu
 from ..heads import synthetic_note
 from ..interrupt import Interrupted, stop_on_interrupt

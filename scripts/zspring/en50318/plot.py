@@ -7,12 +7,11 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..bench.responses import phase_degrees
-from ..figures import new_figure
-from ..line.result import LineResult
+from ..figures import legend_beside, new_figure
+from ..line.result import SLIPPING, LineResult
 from ..line.series import Series
 from ..line.statistics import FIGURES, Section, Statistics, low_pass
 from .edition import Judgement
@@ -21,7 +20,6 @@ from .frf import FrfComparison
 COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:purple")
 STYLES = ("-", "-", ":", "--")
 SHADE: dict[str, Any] = {"color": "tab:green", "alpha": 0.12, "linewidth": 0}
-SLIPPING = 0.99  # share of Mf from which a joint counts as slipping; the tanh law creeps below it
 
 
 def force_figure(series: Series, section: Section | None, found: Statistics, title: str) -> Figure:
@@ -45,7 +43,7 @@ def force_figure(series: Series, section: Section | None, found: Statistics, tit
         axes.plot([low, high], [found[name]] * 2, style, color="tab:red", linewidth=1, label=text or None)
     axes.set_ylabel("contact force  [N]")
     axes.set_title(title)
-    _legend(axes)
+    legend_beside(axes)
     rest = iter(all_axes[1:])
     if series.height is not None:
         axes = next(rest)
@@ -60,7 +58,7 @@ def force_figure(series: Series, section: Section | None, found: Statistics, tit
         ):
             axes.plot(along, 1e3 * values, color=colour, linewidth=1.2, label=name)
         axes.set_ylabel("support\nuplift  [mm]")
-        _legend(axes)
+        legend_beside(axes)
     for axes in all_axes:
         axes.axvspan(low, high, **SHADE)
         axes.grid(True, linewidth=0.4, alpha=0.5)
@@ -89,7 +87,7 @@ def ranges_figure(by_case: Mapping[str, Sequence[Judgement]], title: str) -> Fig
     axes.set_xlabel("place in the accepted range (shaded)")
     axes.set_title(title)
     axes.grid(True, axis="y", linewidth=0.4, alpha=0.5)
-    _legend(axes)
+    legend_beside(axes)
     return figure
 
 
@@ -111,7 +109,7 @@ def sensitivity_figure(
         axes.set_title(case, fontsize=10)
         axes.grid(True, linewidth=0.4, alpha=0.5)
     panels[0].invert_yaxis()
-    panels[-1].legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+    legend_beside(panels[-1])
     figure.suptitle(title)
     return figure
 
@@ -159,7 +157,7 @@ def heads_force_figure(results: Mapping[str, LineResult], section: Section, titl
     force.set_title(title)
     for axes in (force, friction):
         axes.grid(True, linewidth=0.4, alpha=0.5)
-        _legend(axes)
+        legend_beside(axes)
     return figure
 
 
@@ -190,7 +188,3 @@ def frf_comparison_figure(comparisons: Sequence[FrfComparison], edges: Sequence[
 def _width(judgement: Judgement) -> float:
     low, high = judgement.accepted
     return high - low
-
-
-def _legend(axes: Axes) -> None:
-    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))

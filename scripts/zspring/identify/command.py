@@ -6,16 +6,7 @@ from pathlib import Path
 
 import click
 
-from ..options import (
-    copy_examples,
-    fmu_option,
-    format_option,
-    jobs_option,
-    opened,
-    output_option,
-    parameters_option,
-    set_option,
-)
+from ..options import copy_examples, format_option, jobs_option, opened, option, output_option, pantograph_options
 from ..records import claimed
 
 EXAMPLE = ("identify.toml", "bench.csv")
@@ -23,19 +14,17 @@ EXAMPLE = ("identify.toml", "bench.csv")
 
 @click.command()
 @click.argument("settings_path", type=click.Path(path_type=Path), metavar="SETTINGS.toml", required=False)
-@click.option(
+@option(
     "--example",
-    type=click.Path(path_type=Path, file_okay=False),
+    kind=click.Path(path_type=Path, file_okay=False),
     metavar="DIR",
     help="Only write an example into this folder: settings and synthetic measurements, both explained.",
 )
-@parameters_option
-@set_option
+@pantograph_options
 @output_option(described="results/identify-SETTINGS")
 @jobs_option("Amplitudes to simulate at a time.")
 @format_option
-@fmu_option
-def identify(settings_path, example, parameter_set, assignments, output, jobs, suffix, fmu_path) -> None:
+def identify(pantograph, settings_path, example, output, jobs, suffix) -> None:
     """Fit parameters of the model to measured frequency responses.
 
     SETTINGS.toml names the measurements, the free parameters with start and bounds, those that are fixed or
@@ -56,8 +45,8 @@ def identify(settings_path, example, parameter_set, assignments, output, jobs, s
     from .run import identify as run_identification  # scipy's optimisers are slow to load
     from .settings import read_settings
 
-    with opened(fmu_path) as fmu:
-        settings = read_settings(settings_path, fmu, parameter_set, assignments)
+    with opened(pantograph.fmu_path) as fmu:
+        settings = read_settings(settings_path, fmu, pantograph.parameter_set, pantograph.assignments)
         folder = output or Path("results") / f"identify-{settings_path.stem}"
         with claimed(folder):
             run_identification(fmu, settings, settings_path, folder, suffix, jobs)

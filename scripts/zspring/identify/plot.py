@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ..bench.measured import Curve
+from ..bench.curves import Curve
 from ..bench.responses import phase_degrees
 from ..bench.static_test import StaticTest
 from ..figures import new_figure

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..bench.measured import Curve
+from ..bench.curves import Curve
 from ..bench.model import BenchModel, Periods
 from ..bench.responses import as_quantity
 from ..bench.static_test import StaticTest

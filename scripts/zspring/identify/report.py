@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..bench.measured import Curve
+from ..bench.curves import Curve
 from ..fmu import Fmu
 from .fit import Fit
 from .problem import Problem

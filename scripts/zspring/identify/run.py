@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from ..bench.curves import in_band, sign_warning
 from ..bench.measure import FrfSettings
-from ..bench.measured import in_band, read_curves, sign_warning
+from ..bench.measured import read_curves
 from ..bench.model import BenchModel
 from ..bench.static_test import read_static_test
 from ..errors import ZSpringError

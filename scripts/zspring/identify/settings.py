@@ -9,8 +9,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from ..bench.curves import Source
 from ..bench.measure import BENCH_PARAMETERS
-from ..bench.measured import Source
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..parameter_sets import PANTOGRAPHS, find_set, read_set

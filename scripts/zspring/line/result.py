@@ -13,6 +13,7 @@ from ..errors import ZSpringError, missing_extra
 from ..tables import read_table, write_table
 from .series import Series
 
+SLIPPING = 0.99  # share of Mf from which a joint counts as slipping; the tanh law creeps below it
 _SUPPORT = re.compile(r"support uplift at (\S+) m")
 
 

@@ -4,24 +4,15 @@ from __future__ import annotations
 
 import click
 
-from ..options import Numbers, chosen_parameters, fmu_option, opened, output_option, parameters_option, set_option
+from ..options import numbers, output_option, pantograph_options
 from ..records import claimed
 
 
 @click.command()
-@click.option(
-    "--frequencies",
-    type=Numbers(),
-    default="0.05:20:0.05",
-    show_default=True,
-    metavar="LIST",
-    help="Of the receptance in the files, in Hz.",
-)
-@parameters_option
-@set_option
+@numbers("--frequencies", "0.05:20:0.05", "Of the receptance in the files, in Hz.")
+@pantograph_options
 @output_option("results/linearize")
-@fmu_option
-def linearize(frequencies, parameter_set, assignments, output, fmu_path) -> None:
+def linearize(pantograph, frequencies, output) -> None:
     """Print and write the linear models about the static state: modes, matrices, receptance.
 
     linear: three masses with head spring k1. locked, free: the Z-spring with rods held at their static angle,
@@ -32,8 +23,7 @@ def linearize(frequencies, parameter_set, assignments, output, fmu_path) -> None
     unit, eigenvalues s (1/s), eigenvectors (columns; one of each conjugate pair), natural_frequencies and
     head_held_frequencies (undamped, Hz), and the receptance -Z/F at the head (m/N) over frequency (Hz).
     """
-    with opened(fmu_path) as fmu, claimed(output):
-        parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=("suspension",))
+    with pantograph.opened(("suspension",)) as (fmu, parameters), claimed(output):
         import numpy as np
 
         from .run import run_linearize

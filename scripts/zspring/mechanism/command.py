@@ -4,35 +4,22 @@ from __future__ import annotations
 
 import click
 
-from ..options import (
-    Numbers,
-    chosen_parameters,
-    fmu_option,
-    format_option,
-    opened,
-    output_option,
-    parameters_option,
-    set_option,
-)
+from ..bench.measure import BENCH_PARAMETERS
+from ..options import format_option, numbers, option, output_option, pantograph_options
 from ..records import claimed
 
 
 @click.command()
-@click.option("--frequency", type=float, default=2.0, show_default=True, metavar="HZ", help="Of the imposed sine.")
-@click.option(
+@option("--frequency", default=2.0, metavar="HZ", help="Of the imposed sine.")
+@numbers(
     "--accelerations",
-    type=Numbers(),
-    default="0.25,4",
-    show_default=True,
-    metavar="LIST",
-    help="Its peak accelerations in m/s2, one picture for each: a small one leaves the rods stuck.",
+    "0.25,4",
+    "Its peak accelerations in m/s2, one picture for each: a small one leaves the rods stuck.",
 )
-@parameters_option
-@set_option
+@pantograph_options
 @output_option("results/mechanism")
 @format_option
-@fmu_option
-def mechanism(frequency, accelerations, parameter_set, assignments, output, suffix, fmu_path) -> None:
+def mechanism(pantograph, frequency, accelerations, output, suffix) -> None:
     """Draw the linkage of the head suspension to scale: at rest, stuck and slipping.
 
     Rods L1 and L2 turn about joints on head and upper frame that are d apart; the spring lies between their
@@ -42,10 +29,7 @@ def mechanism(frequency, accelerations, parameter_set, assignments, output, suff
 
     Writes mechanism.csv, the figure, and mechanism.html, an animation that any browser opens without network.
     """
-    with opened(fmu_path) as fmu, claimed(output):
-        parameters = chosen_parameters(
-            fmu, parameter_set, assignments, but_not=("drive", "bench.frequency", "bench.acceleration")
-        )
+    with pantograph.opened(BENCH_PARAMETERS) as (fmu, parameters), claimed(output):
         from .run import run_mechanism
 
         run_mechanism(fmu, parameters, frequency, accelerations, output, suffix)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..figures import new_figure
+from ..figures import legend_beside, new_figure
 
 
 def simulation_figure(columns: Mapping[str, np.ndarray], friction_bound: float, title: str) -> Figure:
@@ -31,7 +31,7 @@ def simulation_figure(columns: Mapping[str, np.ndarray], friction_bound: float, 
         axes.set_ylabel(label)
         axes.grid(True, linewidth=0.4, alpha=0.5)
         if len(names) > 1:
-            axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+            legend_beside(axes)
     for sign in (-1, 1):
         panels[-1].axhline(sign * friction_bound, color="gray", linewidth=0.8, linestyle="--")
     panels[0].set_title(title)

@@ -5,42 +5,17 @@ from __future__ import annotations
 import click
 
 from ..bench.loops import SET_HERE
-from ..options import (
-    Numbers,
-    chosen_parameters,
-    fmu_option,
-    format_option,
-    opened,
-    output_option,
-    parameters_option,
-    set_option,
-)
+from ..options import format_option, numbers, output_option, pantograph_options
 from ..records import claimed
 
 
 @click.command()
-@click.option(
-    "--amplitudes",
-    type=Numbers(),
-    default="0.05,0.1,0.2,0.5,0.7,1,1.5,2,3,5,10,20",
-    show_default=True,
-    metavar="LIST",
-    help="Peaks of the head's motion in mm.",
-)
-@click.option(
-    "--rates",
-    type=Numbers(),
-    default="0.01,0.1,1",
-    show_default=True,
-    metavar="LIST",
-    help="Speeds of the head in mm/s.",
-)
-@parameters_option
-@set_option
+@numbers("--amplitudes", "0.05,0.1,0.2,0.5,0.7,1,1.5,2,3,5,10,20", "Peaks of the head's motion in mm.")
+@numbers("--rates", "0.01,0.1,1", "Speeds of the head in mm/s.")
+@pantograph_options
 @output_option("results/static")
 @format_option
-@fmu_option
-def static(amplitudes, rates, parameter_set, assignments, output, suffix, fmu_path) -> None:
+def static(pantograph, amplitudes, rates, output, suffix) -> None:
     """Load and unload the head suspension slowly: hysteresis and equivalent stiffness.
 
     The upper frame is clamped (k2 and k3 made very stiff), for a free one follows a slowly moved head without
@@ -52,8 +27,7 @@ def static(amplitudes, rates, parameter_set, assignments, output, suffix, fmu_pa
 
     Writes stiffness.csv, loops.csv and static.png. After Ctrl-C the loops so far are kept.
     """
-    with opened(fmu_path) as fmu, claimed(output):
-        parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=SET_HERE)
+    with pantograph.opened(SET_HERE) as (fmu, parameters), claimed(output):
         from .run import run_static
 
         run_static(fmu, parameters, [1e-3 * a for a in amplitudes], [1e-3 * rate for rate in rates], output, suffix)

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from ..errors import missing_extra
-from ..options import fmu_option, format_option, opened, output_option
+from ..options import POSITIVE, fmu_option, format_option, opened, option, output_option
 from ..records import claimed
 
 NEEDED = ("distributed", "SALib", "pyarrow")
@@ -18,20 +18,24 @@ NEEDED = ("distributed", "SALib", "pyarrow")
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
 @output_option(described="results/study-NAME, by the name of FILE")
-@click.option(
+@option(
     "--scheduler",
+    kind=str,
     metavar="ADDRESS",
     help="Run on the Dask cluster with this scheduler, e.g. tcp://host:8786, instead of local processes. Its "
     "workers need distributed, fmpy, numpy and the Python version from here; FMU and code are sent to them.",
 )
-@click.option(
-    "--workers", type=click.IntRange(min=1), metavar="N", help="Local processes.  [default: number of processors]"
+@option(
+    "--workers",
+    default=lambda: os.cpu_count() or 1,
+    kind=click.IntRange(min=1),
+    metavar="N",
+    help="Local processes.  [default: number of processors]",
 )
-@click.option(
+@option(
     "--timeout",
-    type=click.FloatRange(min=0, min_open=True),
     default=30.0,
-    show_default=True,
+    kind=POSITIVE,
     help="Longest wait in s for the scheduler, and for a worker when there is none.",
 )
 @click.option("--parquet", is_flag=True, help="Write the results as study.parquet, too, at the end.")
@@ -69,4 +73,4 @@ def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path) 
 
     folder = output or Path("results") / f"study-{file.stem}"
     with opened(fmu_path) as fmu, claimed(folder):
-        run_study(fmu, file, folder, scheduler, workers or os.cpu_count() or 1, timeout, suffix, parquet)
+        run_study(fmu, file, folder, scheduler, workers, timeout, suffix, parquet)

@@ -5,46 +5,27 @@ from __future__ import annotations
 import click
 
 from zspring.errors import missing_extra
-from zspring.options import (
-    chosen_parameters,
-    fmu_option,
-    format_option,
-    opened,
-    output_option,
-    parameters_option,
-    set_option,
-)
+from zspring.options import POSITIVE, format_option, option, output_option, pantograph_options
 from zspring.records import claimed
 
-POSITIVE = click.FloatRange(min=0, min_open=True)
+COUNT = click.IntRange(min=1)
 
 
 @click.command()
-@click.option("--frequency", type=POSITIVE, default=5.0, show_default=True, help="Of the bench's sine, in Hz.")
-@click.option("--acceleration", type=POSITIVE, default=1.0, show_default=True, help="Peak of the head, in m/s2.")
-@click.option(
-    "--periods",
-    type=click.IntRange(min=1),
-    default=30,
-    show_default=True,
-    help="Length of the run in periods, not counting the ramp.",
-)
-@click.option(
+@option("--frequency", default=5.0, kind=POSITIVE, help="Of the bench's sine, in Hz.")
+@option("--acceleration", default=1.0, kind=POSITIVE, help="Peak of the head, in m/s2.")
+@option("--periods", default=30, kind=COUNT, help="Length of the run in periods, not counting the ramp.")
+@option(
     "--rounds",
-    type=click.IntRange(min=1),
     default=5,
-    show_default=True,
+    kind=COUNT,
     help="Timed runs of each variant; the fastest counts. Runs of more than 1 s are not repeated.",
 )
 @click.option("--quick", is_flag=True, help="A few variants only, to try it out.")
-@parameters_option
-@set_option
+@pantograph_options
 @output_option("results/integrators")
 @format_option
-@fmu_option
-def integrators(
-    frequency, acceleration, periods, rounds, quick, parameter_set, assignments, output, suffix, fmu_path
-) -> None:
+def integrators(pantograph, frequency, acceleration, periods, rounds, quick, output, suffix) -> None:
     """Compare the FMU's HHT method with other solvers: error against CPU time.
 
     The same regularised model on the bench, from rest, by HHT in the FMU, Dormand-Prince 5(4) (RK45, what
@@ -62,6 +43,5 @@ def integrators(
         if package not in ("numba", "CyRK"):
             raise
         raise missing_extra([package], "research") from None
-    with opened(fmu_path) as fmu, claimed(output):
-        parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=SET_BY_THE_STUDY)
+    with pantograph.opened(SET_BY_THE_STUDY) as (fmu, parameters), claimed(output):
         run_integrators(fmu, parameters, frequency, acceleration, periods, rounds, quick, output, suffix)

@@ -5,16 +5,7 @@ from __future__ import annotations
 import click
 
 from zspring.bench.measure import FrfSettings
-from zspring.options import (
-    Numbers,
-    chosen_parameters,
-    fmu_option,
-    format_option,
-    opened,
-    output_option,
-    parameters_option,
-    set_option,
-)
+from zspring.options import format_option, numbers, option, output_option, pantograph_options
 from zspring.records import claimed
 
 STANDARD = FrfSettings()
@@ -22,69 +13,30 @@ SET_HERE = ("drive", "suspension", "friction", "solver.tangent", "bench.frequenc
 
 
 @click.command()
-@click.option(
-    "--amplitudes",
-    type=Numbers(),
-    default=STANDARD.amplitudes,
-    metavar="LIST",
-    help="Peak accelerations of the figure in m/s2.  [default: the standard figure's]",
+@numbers(
+    "--amplitudes", STANDARD.amplitudes, "Peak accelerations of the figure in m/s2.  [default: the standard figure's]"
 )
-@click.option(
-    "--frequencies",
-    type=Numbers(),
-    default=STANDARD.frequencies,
-    metavar="LIST",
-    help="Frequencies of the figure in Hz.  [default: the standard figure's]",
-)
-@click.option(
-    "--taus",
-    type=Numbers(),
-    default="10,100,1e3,1e4,1e5,1e6",
-    show_default=True,
-    metavar="LIST",
-    help="Steepnesses of the friction law in s.",
-)
-@click.option(
+@numbers("--frequencies", STANDARD.frequencies, "Frequencies of the figure in Hz.  [default: the standard figure's]")
+@numbers("--taus", "10,100,1e3,1e4,1e5,1e6", "Steepnesses of the friction law in s.")
+@option(
     "--tau-stride",
-    type=click.IntRange(min=1),
     default=5,
-    show_default=True,
+    kind=click.IntRange(min=1),
     metavar="N",
     help="Each N-th point of the figure is enough for the work over tau, where the exact tangent is slow.",
 )
-@click.option(
+@option(
     "--bench-frequency",
-    type=float,
     default=5.0,
-    show_default=True,
     metavar="HZ",
     help="Bench on which the step is recorded and force and position are compared.",
 )
-@click.option(
-    "--bench-acceleration",
-    type=float,
-    default=1.0,
-    show_default=True,
-    metavar="A",
-    help="Its peak acceleration in m/s2.",
-)
-@parameters_option
-@set_option
+@option("--bench-acceleration", default=1.0, metavar="A", help="Its peak acceleration in m/s2.")
+@pantograph_options
 @output_option("results/newton")
 @format_option
-@fmu_option
 def newton(
-    amplitudes,
-    frequencies,
-    taus,
-    tau_stride,
-    bench_frequency,
-    bench_acceleration,
-    parameter_set,
-    assignments,
-    output,
-    suffix,
-    fmu_path,
+    pantograph, amplitudes, frequencies, taus, tau_stride, bench_frequency, bench_acceleration, output, suffix
 ) -> None:
     """Compare Newton tangents of the steep friction law, and what its steepness costs.
 
@@ -97,8 +49,7 @@ def newton(
 
     Takes about one minute. Writes jump.csv, newton.csv, accuracy.csv and the figures jump and newton.
     """
-    with opened(fmu_path) as fmu, claimed(output):
-        parameters = chosen_parameters(fmu, parameter_set, assignments, but_not=SET_HERE)
+    with pantograph.opened(SET_HERE) as (fmu, parameters), claimed(output):
         from .run import NewtonSettings, run_newton
 
         settings = NewtonSettings(amplitudes, frequencies, taus, tau_stride, bench_frequency, bench_acceleration)

@@ -1,0 +1,97 @@
+"""Results under way: kept at once, gone on with, never overwritten; one run at a time in a folder."""
+
+from __future__ import annotations
+
+import multiprocessing
+from pathlib import Path
+
+import pytest
+
+from commands import zspring
+from zspring.errors import ZSpringError
+from zspring.interrupt import Interrupted
+from zspring.records import Record, claimed, fill
+
+HEAD = {"date": "today", "step": "2 ms"}
+
+
+def record(path: Path, head: dict[str, str] = HEAD) -> Record[tuple[int, float]]:
+    return Record(path, head, ["n", "root"], lambda kept: kept, lambda row: (int(row["n"]), float(row["root"])))
+
+
+def roots(numbers, fails_at: int | None = None, stops_at: int | None = None):
+    def work(stop):
+        for n in numbers:
+            if n == fails_at:
+                raise ZSpringError("no root")
+            yield n, n**0.5
+            if n == stops_at:
+                stop.set()
+                return
+
+    return work
+
+
+def test_what_is_kept_is_gone_on_with(tmp_path, capsys):
+    path = tmp_path / "new/roots.csv"
+    with pytest.raises(ZSpringError, match=r"no root; 3 of 5 roots are kept in .*roots\.csv; the same command goes on"):
+        fill(record(path), 5, 5, "roots", roots(range(5), fails_at=3))
+    with path.open("a") as file:
+        file.write("3,1.7")  # cut off by a power failure
+    again = record(path, {**HEAD, "date": "tomorrow"})
+    assert again.results == [(0, 0.0), (1, 1.0), (2, 2**0.5)]
+    with pytest.raises(Interrupted, match="interrupted after 4 of 5 roots, kept in"):
+        fill(again, 5, 2, "roots", roots([3, 4], stops_at=3))
+    assert "going on after 3 of 5 roots" in capsys.readouterr().out
+    last = record(path)
+    fill(last, 5, 1, "roots", roots([4]))
+    assert record(path).results == [(n, n**0.5) for n in range(5)] == last.results
+
+
+def test_work_that_cannot_begin_leaves_nothing(tmp_path):
+    with pytest.raises(ZSpringError, match=r"^no root$"):
+        fill(record(tmp_path / "folder/roots.csv"), 3, 3, "roots", roots(range(3), fails_at=0))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("head", "line", "complaint"),
+    [
+        ({**HEAD, "step": "1 ms"}, "", r"is of other settings \(step: 2 ms, now 1 ms\): remove it, or give"),
+        ({**HEAD, "law": "Coulomb"}, "", r"is of other settings \(law: none, now Coulomb\)"),
+        (HEAD, "4,two\n", "is not as it was written: remove it, or give another --output"),
+        (HEAD, "4\n", "is not as it was written"),
+    ],
+)
+def test_results_of_other_settings_and_damaged_ones_are_refused_and_stay(tmp_path, head, line, complaint):
+    path = tmp_path / "roots.csv"
+    fill(record(path), 2, 2, "roots", roots(range(2)))
+    path.write_text(path.read_text() + line)
+    before = path.read_bytes()
+    with pytest.raises(ZSpringError, match=complaint):
+        record(path, head)
+    assert path.read_bytes() == before
+
+
+def hold(folder: Path, started, end) -> None:
+    with claimed(folder):
+        started.set()
+        end.wait(30)
+
+
+def test_a_second_run_in_a_folder_ends_before_it_works(tmp_path):
+    context = multiprocessing.get_context("spawn")
+    started, end = context.Event(), context.Event()
+    other = context.Process(target=hold, args=(tmp_path / "out", started, end))
+    other.start()
+    try:
+        assert started.wait(30)
+        for command in (["frf", "--amplitudes", "1"], ["simulate"], ["static"], ["couple"], ["en50318", "--quick"]):
+            _, err = zspring(tmp_path, *command, "--output", "out", status=1)
+            assert err == "zspring: out: another run writes there: wait for its end, or give another --output\n"
+    finally:
+        end.set()
+        other.join()
+    assert other.exitcode == 0 and list(tmp_path.iterdir()) == []
+    zspring(tmp_path, "linearize", "--output", "out")
+    assert not list((tmp_path / "out").glob(".*"))
