@@ -34,7 +34,7 @@ LEFT_OUT = ("*/plot.py", "*/figures.py", "*/__init__.py", "*/__main__.py", "fmu_
 COLUMNS = ["file", "line", "fault", "result", "noticed by"]
 KILLED, SURVIVED, NOT_VIABLE = "noticed", "NOT NOTICED", "not viable"
 LONGEST = 1200  # s, of a run of tests; a fault that makes it endless is noticed by that
-NOT_THESE = "not no_memory_error"  # which builds everything anew, with sanitizers
+NOT_THESE = "not no_memory_error and not test_style"  # builds anew with sanitizers; runs nothing
 # Where the tests of a C++ file are; those of a Python file name its module or its command.
 TESTS_OF = {"fmu_src/pantograph": ["core", "fmi"], "fmu_src/catenary": ["line", "fmi"], "fmu_src": ["fmi", "core"]}
 
