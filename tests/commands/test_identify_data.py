@@ -259,7 +259,7 @@ def test_other_data_sets_and_the_static_line_of_a_universal_file_are_passed_over
         ({"x": FREQUENCY[::-1]}, "data set 1: the frequencies must increase"),
         ({"x": np.array([1.0, 2.0, 2.0, 3.0])}, "data set 1: the frequencies must increase"),
         ({"orddenom_spec_data_type": 12}, "data set 1: types 8 over 12: must be motion over force"),
-        ({"orddenom_axis_units_lab": "lbf"}, "data set 1: unit 'lbf': must be one of m, mm"),
+        ({"orddenom_axis_units_lab": "lbf"}, "data set 1: unit 'lbf': must be one of N, kN"),
         ({"ordinate_axis_units_lab": "NONE"}, "data set 1: unit 'NONE': must be one of m, mm"),
         ({"ordinate_spec_data_type": 5}, "data set 1: types 5 over 13: must be motion over force"),
         ({"z_axis_value": 0.0}, "data set 1: no amplitude"),
@@ -360,7 +360,10 @@ def test_a_damper_in_a_static_test_feels_the_speed_of_each_way(tmp_path):
     "text, complaint",
     [
         ("displacement [mm],force [N]\n0,1\n1,2\n", "needs at least three rows"),
-        ("displacement [mm],force [N],time [ms]\n0,1,0\n1,2,1\n2,3,2\n", r"column 'time': unit \[ms\]: must be s"),
+        (
+            "displacement [mm],force [N],time [kg]\n0,1,0\n1,2,1\n2,3,2\n",
+            r"column 'time': unit \[kg\]: must be one of s, ms",
+        ),
         ("displacement [mm],force [N],time [s]\n0,1,0\n1,2,0\n2,3,1\n", "line 3: time must increase"),
     ],
 )

@@ -65,8 +65,8 @@ def test_blocks_with_a_hole_are_left_out_whole_and_no_others():
 @pytest.mark.parametrize(
     "design, samples, vary, count",
     [
-        ("sobol", 2**18, {"m1": Range(1, 2), "m2": Range(1, 2)}, 2**20),
-        ("latin-hypercube", 1_000_001, {"m1": Range(1, 2)}, 1_000_001),
+        ("sobol", 2**18, {"m1": RANGE, "m2": RANGE}, 2**20),
+        ("latin-hypercube", 1_000_001, {"m1": RANGE}, 1_000_001),
         ("grid", 0, {"m1": (1.0,) * 1001, "m2": (1.0,) * 1000}, 1_001_000),
         ("list", 0, {"m1": (1.0,) * 1_000_001}, 1_000_001),
     ],
