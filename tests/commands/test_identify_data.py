@@ -409,6 +409,11 @@ def test_settings_give_the_parameters_of_every_x(tmp_path):
         ("start = 15000", "start = 1", "free.zspring.k: start = 1 must lie in 5000 .. 40000"),
         ("min = 5000", "min = 50000", "free.zspring.k: min = 50000 must be below max = 40000"),
         ("min = 5000", "min = -1", "free.zspring.k: min = -1: the FMU allows min 0.001"),
+        (
+            "zspring.k = ",
+            "solver.alpha = { start = -0.1, min = -0.2, max = 0.1 }\n#",
+            "max = 0.1: the FMU allows max 0",
+        ),
         ("min = 5000, ", "", "free.zspring.k: min is missing"),
         ("max = 40000", 'max = "big"', "free.zspring.k: max = 'big': must be a number"),
         ('"zspring"', '"spring"', 'model = \'spring\': must be "linear" or "zspring"'),
