@@ -273,7 +273,7 @@ def test_the_residual_table_leaves_out_what_was_not_computed():
 
 
 @pytest.mark.parametrize(
-    "low, high, is_logarithmic", [(1, 10, False), (1, 10.1, True), (0, 100, False), (-1, 90, False)]
+    "low, high, is_logarithmic", [(1, 10, False), (1, 10.1, True), (2, 30, True), (0, 100, False), (-1, 90, False)]
 )
 def test_wide_positive_ranges_are_searched_on_a_logarithmic_scale(low, high, is_logarithmic):
     free = Free(start=low, min=low, max=high)

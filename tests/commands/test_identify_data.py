@@ -260,7 +260,7 @@ def test_other_data_sets_and_the_static_line_of_a_universal_file_are_passed_over
         ({"x": FREQUENCY[::-1]}, "data set 1: the frequencies must increase"),
         ({"x": np.array([1.0, 2.0, 2.0, 3.0])}, "data set 1: the frequencies must increase"),
         ({"orddenom_spec_data_type": 12}, "data set 1: types 8 over 12: must be motion over force"),
-        ({"orddenom_axis_units_lab": "lbf"}, "data set 1: unit 'lbf': must be one of m, mm"),
+        ({"orddenom_axis_units_lab": "lbf"}, "data set 1: unit 'lbf': must be one of N, kN"),
         ({"ordinate_axis_units_lab": "NONE"}, "data set 1: unit 'NONE': must be one of m, mm"),
         ({"ordinate_spec_data_type": 5}, "data set 1: types 5 over 13: must be motion over force"),
         ({"z_axis_value": 0.0}, "data set 1: no amplitude"),
@@ -361,7 +361,10 @@ def test_a_damper_in_a_static_test_feels_the_speed_of_each_way(tmp_path):
     "text, complaint",
     [
         ("displacement [mm],force [N]\n0,1\n1,2\n", "needs at least three rows"),
-        ("displacement [mm],force [N],time [ms]\n0,1,0\n1,2,1\n2,3,2\n", r"column 'time': unit \[ms\]: must be s"),
+        (
+            "displacement [mm],force [N],time [kg]\n0,1,0\n1,2,1\n2,3,2\n",
+            r"column 'time': unit \[kg\]: must be one of s, ms",
+        ),
         ("displacement [mm],force [N],time [s]\n0,1,0\n1,2,0\n2,3,1\n", "line 3: time must increase"),
     ],
 )
@@ -407,6 +410,11 @@ def test_settings_give_the_parameters_of_every_x(tmp_path):
         ("start = 15000", "start = 1", "free.zspring.k: start = 1 must lie in 5000 .. 40000"),
         ("min = 5000", "min = 50000", "free.zspring.k: min = 50000 must be below max = 40000"),
         ("min = 5000", "min = -1", "free.zspring.k: min = -1: the FMU allows min 0.001"),
+        (
+            "zspring.k = ",
+            "solver.alpha = { start = -0.1, min = -0.2, max = 0.1 }\n#",
+            "max = 0.1: the FMU allows max 0",
+        ),
         ("min = 5000, ", "", "free.zspring.k: min is missing"),
         ("max = 40000", 'max = "big"', "free.zspring.k: max = 'big': must be a number"),
         ('"zspring"', '"spring"', 'model = \'spring\': must be "linear" or "zspring"'),

@@ -50,10 +50,11 @@ def test_a_named_parameter_set_is_linearised(tmp_path):
 
 
 def test_npz_and_mat_hold_the_same_model(tmp_path):
-    zspring(tmp_path, "linearize", "--frequencies", "1:10:1", "--output", "out")
+    """In a folder that is made with those above it."""
+    zspring(tmp_path, "linearize", "--frequencies", "1:10:1", "--output", "new/out")
     for name in MODELS:
-        matlab = loadmat(tmp_path / f"out/linear-{name}.mat")
-        with np.load(tmp_path / f"out/linear-{name}.npz") as file:
+        matlab = loadmat(tmp_path / f"new/out/linear-{name}.mat")
+        with np.load(tmp_path / f"new/out/linear-{name}.npz") as file:
             n = len(file["dof"])
             assert [str(cell[0]) for cell in matlab["dof"].ravel()] == list(file["dof"])
             assert [str(cell[0]) for cell in matlab["unit"].ravel()] == list(file["unit"])

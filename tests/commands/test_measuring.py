@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import threading
 from dataclasses import replace
 
@@ -12,10 +11,10 @@ import pytest
 from scipy.integrate import quad
 
 from linear import PUBLISHED, LinearPantograph
-from zspring.bench.curves import Curve
 from zspring.bench.fmu_bench import FmuBench
 from zspring.bench.input_bench import InputBench
 from zspring.bench.measure import FrfSettings, left_out, measure, settle, sweeps
+from zspring.bench.measured import Curve
 from zspring.bench.model import BenchModel
 from zspring.bench.resonances import LEAST_STEP, extremes
 from zspring.bench.responses import acceleration_of, as_quantity, phase_degrees, response_of
@@ -145,6 +144,19 @@ def test_a_sweep_has_the_points_that_the_stroke_allows_in_its_direction():
     assert [s.amplitude for s in sweeps(replace(settings, stroke=0.02))] == [0.2]
 
 
+def test_the_standard_figure_doubles_its_amplitudes_over_half_a_hertz_to_twenty():
+    settings = FrfSettings()
+    np.testing.assert_array_equal(settings.amplitudes, 0.25 * 2.0 ** np.arange(6))
+    np.testing.assert_array_equal(settings.frequencies, np.arange(0.5, 20.1, 0.25))
+    # 100 mm of stroke: 8 m/s2 from 1.42 Hz on, 4 from 1.01, 2 from 0.71, 1 from 0.50 Hz on.
+    assert [(p.amplitude, p.frequency) for p in left_out(settings)] == [
+        (1, 0.5),
+        *((2, f) for f in (0.5,)),
+        *((4, f) for f in (0.5, 0.75, 1.0)),
+        *((8, f) for f in (0.5, 0.75, 1.0, 1.25)),
+    ]
+
+
 @pytest.mark.parametrize("direction", ["up", "down", "rest"])
 def test_a_model_of_a_measurement_sweeps_in_its_direction(own_fmu, direction):
     """As `zspring frf` does; what is left of the transients tells the directions apart."""
@@ -194,9 +206,9 @@ class Recorder:
         self._frequency = values["bench.frequency"]
 
     def get(self, names):
-        """The bench's grid, as model and interface tell it: at least 16 steps in a period, none above solver.step."""
+        """Internal steps in a period: as few as the step allows, but 16 at least."""
         assert names == ["bench.steps_per_period"]
-        return [max(16, math.ceil(1 / (self._frequency * self._step) - 1e-9))]
+        return [max(16, int(np.ceil(1 / (self._frequency * self._step) - 1e-9)))]
 
     refusals = contextlib.nullcontext
 
