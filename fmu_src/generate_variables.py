@@ -16,6 +16,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 UNBOUNDED = "HUGE_VAL"
+OTHER_MEMBER = {"solver.alpha": "solver.hht_alpha"}  # in the models alpha is the angle of a rod
 DECLARED = "initialDependencies"
 
 
@@ -40,16 +41,9 @@ def identifier_and_index(name):
     return (head + tail).replace(".", "_dot_"), int(index or 1) - 1
 
 
-def causality(variable):
-    """As an enumerator of C++."""
-    name = variable.get("causality")
-    return name[0].upper() + name[1:]
-
-
 def row(index, variable, enums):
     """A row of the table of variables but for the last column, as in the heading that `table` writes."""
-    name = variable.get("name")
-    identifier, element = identifier_and_index(name)
+    name, causality = variable.get("name"), variable.get("causality")
     value = variable[0]
     if variable.get("valueReference") != str(index):
         refuse(f"{name}: valueReference must be {index}, its place in the list")
@@ -63,7 +57,7 @@ def row(index, variable, enums):
             if bound is not None and outside(float(start), float(bound)):
                 refuse(f"{name}: start = {start} is outside its bound {bound}")
     return (
-        f'{identifier}, {element}, "{name}", {value.tag}, {causality(variable)}, '
+        f'"{name}", {value.tag}, {causality[0].upper() + causality[1:]}, '
         f'{str(variable.get("variability") == "tunable").lower()}, "{value.get("unit", "")}", {start or 0}, '
         f'{low or "-" + UNBOUNDED}, {high or UNBOUNDED}, "{", ".join(items)}"'
     )
@@ -76,26 +70,27 @@ def macro(name, columns, rows):
 
 def table(root, guid):
     """Text of variables.inc."""
-    variables, enums, identifiers, outputs = list(root.find("ModelVariables")), enumerations(root), {}, []
-    for v in variables:
-        identifier, element = identifier_and_index(v.get("name"))
-        continuous = v[0].tag == "Real" and v.get("variability", "continuous") == "continuous"
-        identifiers[identifier] = f"{identifier}, {causality(v)}, {str(continuous).lower()}"
+    enums, identifiers, outputs, rows = enumerations(root), {}, [], []
+    for i, v in enumerate(root.find("ModelVariables")):
+        name = v.get("name")
+        identifier, element = identifier_and_index(name)
         if v.get("causality") == "output":
+            continuous = v[0].tag == "Real" and v.get("variability", "continuous") == "continuous"
+            identifiers[identifier] = f"{identifier}, {str(continuous).lower()}"
+            known_as = len(outputs)
             outputs.append(f"{identifier}, {element}")
-    place = iter(range(len(outputs)))
-    rows = [
-        f"{row(i, v, enums)}, {next(place) if v.get('causality') == 'output' else -1}" for i, v in enumerate(variables)
-    ]
+        else:
+            known_as = OTHER_MEMBER.get(name) or re.sub(r"\[\d+\]", f"[{element}]", name)
+        rows.append(f"{row(i, v, enums)}, {known_as}")
     return (
         "// Generated from the model description.\n"
         f'#define ZSPRING_GUID "{guid}"\n'
-        f'#define ZSPRING_MODEL_IDENTIFIER "{root.find("CoSimulation").get("modelIdentifier")}"\n'
-        + macro("IDENTIFIERS", "identifier, causality, continuous", identifiers.values())
+        f"#define ZSPRING_OUTPUT_COUNT {len(outputs)}\n"
+        + macro("IDENTIFIERS", "identifier, continuous", identifiers.values())
         + macro(
             "VARIABLES",
-            "identifier, index, name, type, causality, tunable, unit, start, min, max, "
-            "items of an enumeration, place among the outputs",
+            "name, type, causality, tunable, unit, start, min, max, items of an enumeration, "
+            "member of the model's struct or place among the outputs",
             rows,
         )
         + macro("OUTPUTS", "identifier, index", outputs)

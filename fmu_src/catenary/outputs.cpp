@@ -44,7 +44,7 @@ const Passage stays;
 
 View::View(const Line& overhead, const LineState& state) : line(overhead), s(state) {
   for (int i = 0; i < pantographs; ++i) contact[i] = line.mesh.at(s.passage[i].position);
-  for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point_position[i]);
+  for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point.position[i]);
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (int j = 0; j < static_cast<int>(line.mesh.droppers.size()); ++j) {
     const double force = dropper_force(j);

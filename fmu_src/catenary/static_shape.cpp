@@ -57,7 +57,7 @@ StaticShape static_shape(const Parameters& p, const Mesh& mesh, const Matrices& 
     }
     shape.height = hanging(load);
     for (int station = 0; station <= last; ++station)
-      shape.height[deflection(station, Messenger)] += p.encumbrance;
+      shape.height[deflection(station, Messenger)] += p.line.encumbrance;
     for (int j = 0; j < n; ++j)
       shape.length[j] = shape.height[deflection(mesh.droppers[j], Messenger)] -
                         shape.height[deflection(mesh.droppers[j], Contact)];

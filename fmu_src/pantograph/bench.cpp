@@ -47,6 +47,7 @@ double Ramp::integral(double s) const {
 }
 
 bool BenchState::is_possible(double largest_step) const {
+  const double frequency = programme.frequency;
   if (frequency == 0) return true;
   const double step = 1 / (frequency * steps_per_period);
   return frequency > 0 && steps_per_period == steps_in_period(frequency, largest_step) &&
@@ -57,7 +58,7 @@ double Bench::grid_step(double frequency, double largest_step) {
   return 1 / (frequency * steps_in_period(frequency, largest_step));
 }
 
-double Bench::grid_step() const { return 1 / (b_.frequency * b_.steps_per_period); }
+double Bench::grid_step() const { return 1 / (b_.programme.frequency * b_.steps_per_period); }
 
 double Bench::elapsed() const { return b_.node * grid_step() + b_.offset; }
 
@@ -83,11 +84,12 @@ Phasor Bench::motion(double tau, Boundary& b) const {
   return {sine, cosine};
 }
 
-void Bench::tune(double frequency, double acceleration, double largest_step) {
-  if (frequency == b_.frequency && acceleration == b_.acceleration) return;
+void Bench::tune(const BenchParameters& programme, double largest_step) {
+  const double frequency = programme.frequency, acceleration = programme.acceleration;
+  if (frequency == b_.programme.frequency && acceleration == b_.programme.acceleration) return;
   const double target = acceleration / (4 * pi * pi * frequency * frequency);
   double X = 0, dX = 0, ddX = 0, f = frequency, df = 0, ddf = 0, phase = 0;
-  if (b_.frequency > 0 && !(b_.acceleration == 0 && b_.node >= b_.ramp_steps)) {
+  if (b_.programme.frequency > 0 && !(b_.programme.acceleration == 0 && b_.node >= b_.ramp_steps)) {
     const double s = elapsed();
     X = b_.amplitude.value(s), dX = b_.amplitude.slope(s), ddX = b_.amplitude.curvature(s);
     f = b_.speed.value(s), df = b_.speed.slope(s), ddf = b_.speed.curvature(s);
@@ -96,8 +98,7 @@ void Bench::tune(double frequency, double acceleration, double largest_step) {
   const double carry = b_.carry;
   b_ = {};
   b_.carry = carry;
-  b_.frequency = frequency;
-  b_.acceleration = acceleration;
+  b_.programme = programme;
   b_.phase = phase;
   b_.steps_per_period = steps_in_period(frequency, largest_step);
   const double slower = std::max(1.0, frequency / std::max(f, 1e-3 * frequency));
@@ -111,7 +112,7 @@ void Bench::tune(double frequency, double acceleration, double largest_step) {
 void Bench::advance(double h, bool reaches_node, Phasor begin, double force_begin, Phasor end, double force_end) {
   if (b_.node >= b_.ramp_steps) {
     // (1/pi) integral of F sin, F cos over the period.
-    const double weight = h * b_.frequency;
+    const double weight = h * b_.programme.frequency;
     b_.sin_sum += weight * (force_begin * begin.sine + force_end * end.sine);
     b_.cos_sum += weight * (force_begin * begin.cosine + force_end * end.cosine);
   }

@@ -29,13 +29,13 @@ const Signal& position_input(Drive drive, const Inputs& u) {
   return drive == Drive::Wire ? u.wire_height : u.head_displacement;
 }
 
-double CommunicationStep::largest_internal_step() const {
-  return p_.drive == Drive::Bench ? Bench::grid_step(held_.bench_frequency, p_.solver.step) : p_.solver.step;
+void set_forces(const Inputs& u, double tau, Boundary& b) {
+  b.uplift = {u.uplift.head.at(tau), u.uplift.upper_frame.at(tau), u.uplift.lower_frame.at(tau)};
+  b.contact_force = u.contact_force.at(tau);
 }
 
-void CommunicationStep::set_forces(double tau, Boundary& b) const {
-  for (int k = 0; k < 3; ++k) b.uplift[k] = held_.inputs.uplift[k].at(tau);
-  b.contact_force = held_.inputs.contact_force.at(tau);
+double largest_internal_step(const Parameters& p, const Held& held) {
+  return p.drive == Drive::Bench ? Bench::grid_step(held.bench.frequency, p.solver.step) : p.solver.step;
 }
 
 }  // namespace zspring

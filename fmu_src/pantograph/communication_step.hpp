@@ -15,26 +15,15 @@ struct SimulationState {
   MotionState motion;  // Drive::Displacement: the head; Drive::Wire: the wire
   BenchState bench;
 };
-
-template <class Visitor>
-void visit(SimulationState& s, Visitor&& f) {
-  visit(s.mechanical, f);
-  visit(s.motion, f);
-  visit(s.bench, f);
-}
+ZSPRING_MEMBERS(SimulationState, mechanical, motion, bench)
 
 // What holds during one communication step.
 struct Held {
   Inputs inputs;
-  double bench_frequency = 0, bench_acceleration = 0;
+  BenchParameters bench;
   double length = 0;  // s; 0 before the first step
 };
-
-template <class Visitor>
-void visit(Held& h, Visitor&& f) {
-  visit(h.inputs, f);
-  f(h.bench_frequency), f(h.bench_acceleration), f(h.length);
-}
+ZSPRING_MEMBERS(Held, inputs, bench, length)
 
 // An internal step that Newton did not solve, however short.
 struct Unsolved {
@@ -48,12 +37,13 @@ void meet(const Hht& hht, const Boundary& b0, MechanicalState& s);
 void meet_variation(const Hht& hht, const Boundary& db0, MechanicalState& d);
 
 const Signal& position_input(Drive drive, const Inputs& u);
+void set_forces(const Inputs& u, double tau, Boundary& b);
+double largest_internal_step(const Parameters& p, const Held& held);  // s
 
 class CommunicationStep {
  public:
   CommunicationStep(const Hht& hht, const Held& held) : hht_(hht), p_(hht.mechanics().parameters), held_(held) {}
 
-  double largest_internal_step() const;  // s
   // Leads `state` through it; on_step(from, to, b0, b1, h) sees each internal step that was made.
   template <class OnStep>
   std::optional<Unsolved> run(SimulationState& state, OnStep&& on_step) const {
@@ -63,13 +53,11 @@ class CommunicationStep {
  private:
   static constexpr int most_halvings = 10;  // to 1/1024 of the internal step
 
-  void set_forces(double tau, Boundary& b) const;
-
   template <class OnStep>
   std::optional<Unsolved> run_bench(SimulationState& state, OnStep& on_step) const {
     MechanicalState& s = state.mechanical;
     Bench bench(state.bench);
-    bench.tune(held_.bench_frequency, held_.bench_acceleration, p_.solver.step);
+    bench.tune(held_.bench, p_.solver.step);
     const double rounding = rounding_of_time * bench.grid_step();
     const double end_time = held_.length + state.bench.carry;
     double done = 0;  // s since the begin of the communication step, at a node or a cut
@@ -80,16 +68,16 @@ class CommunicationStep {
 
     Boundary b0, b1;
     const auto boundary = [&](double tau, Boundary& b) {
-      set_forces(tau, b);
+      set_forces(held_.inputs, tau, b);
       bench.motion(tau - done, b);
     };
-    set_forces(0, b0);
+    set_forces(held_.inputs, 0, b0);
     Phasor begin = bench.motion(0, b0);
     meet(hht_, b0, s);
     while (end_time - done > rounding) {
       const bool reaches_node = end_time >= next_node - rounding;
       const double h = reaches_node ? bench.to_next_node() : end_time - done;
-      set_forces(done + h, b1);
+      set_forces(held_.inputs, done + h, b1);
       const Phasor end = bench.motion(h, b1);
       const double force = s.contact_force - p_.static_force;
       if (const auto unsolved = cover(s, boundary, b0, b1, done, h, 0, on_step)) return unsolved;
@@ -110,7 +98,7 @@ class CommunicationStep {
     const ImposedMotion motion(state.motion, position_input(p_.drive, held_.inputs), H);
     Boundary b0, b1;
     const auto boundary = [&](double tau, Boundary& b) {
-      set_forces(tau, b);
+      set_forces(held_.inputs, tau, b);
       if (p_.drive != Drive::Force) motion.at(tau, b);
     };
     const Count n = internal_steps(H, p_.solver.step);

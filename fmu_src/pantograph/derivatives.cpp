@@ -35,7 +35,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     MechanicalState d;
     d.boundary = initial_boundary(direction);
     if (p.drive == Drive::Force) d.contact_force = d.boundary.contact_force;
-    if (p.drive == Drive::Wire) d.contact_force = s.contact_force > 0 ? -p.contact_k * d.boundary.position : 0;
+    if (p.drive == Drive::Wire) d.contact_force = s.contact_force > 0 ? -p.contact.k * d.boundary.position : 0;
     if (hht_.head_imposed()) d.contact_force = d.boundary.uplift[0];
     return zspring::outputs_change(view(), d);
   }
@@ -50,8 +50,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
 
   const auto boundary_change = [&](double tau) {
     Boundary b;
-    for (int k = 0; k < 3; ++k) b.uplift[k] = du.uplift[k].value;
-    b.contact_force = du.contact_force.value;
+    set_forces(du, tau, b);
     if (moves) motion.at(tau, b);
     return b;
   };

@@ -50,7 +50,7 @@ StepCoefficients::StepCoefficients(const Mechanics& m, double step)
 Contact Hht::contact(const Boundary& b, double u, double v) const {
   const Parameters& p = m_.parameters;
   if (p.drive == Drive::Force) return {b.contact_force, true};
-  const double force = p.static_force + p.contact_k * (u - b.position) + p.contact_c * (v - b.velocity);
+  const double force = p.static_force + p.contact.k * (u - b.position) + p.contact.c * (v - b.velocity);
   return force > 0 ? Contact{force, true} : Contact{0, false};
 }
 
@@ -114,7 +114,7 @@ bool Hht::solve(const StepCoefficients& c, const Trial& t, Vector5& r) const {
   A(0, 3) -= gw * p.c1;
   A(3, 0) -= gw * p.c1;
   A(3, 3) += m_.mass[U2] + gw * (p.c1 + p.c2) + bw * p.k2;
-  if (p.drive == Drive::Wire && t.contact.closed) A(0, 0) += gw * p.contact_c + bw * p.contact_k;
+  if (p.drive == Drive::Wire && t.contact.closed) A(0, 0) += gw * p.contact.c + bw * p.contact.k;
 
   // The lower frame couples to the upper one only.
   const double coupling = -(gw * p.c2 + bw * p.k2);

@@ -5,7 +5,7 @@ namespace {
 
 double head_force_change(const Parameters& p, bool closed, const Boundary& db, double du, double dv) {
   if (p.drive == Drive::Force) return db.contact_force;
-  return closed ? p.contact_k * (du - db.position) + p.contact_c * (dv - db.velocity) : 0;
+  return closed ? p.contact.k * (du - db.position) + p.contact.c * (dv - db.velocity) : 0;
 }
 
 }  // namespace

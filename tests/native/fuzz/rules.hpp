@@ -10,7 +10,7 @@
 
 namespace fuzz {
 
-using zspring::Causality;
+using zspring::fmi::Causality;
 using zspring::fmi::Type;
 using zspring::fmi::Variable;
 using zspring::fmi::variable_count;
