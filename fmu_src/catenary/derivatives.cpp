@@ -33,8 +33,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
       changed[i] = initial_passage(line_.p, i, direction.pantograph[i]);
       if (line_.p.travel == Travel::Speed) changed[i].position = 0;  // a parameter
       const Place& place = dloads.on[i].place;
-      dloads.on[i].value =
-          changed[i].force * place.value + state_.passage[i].force * changed[i].position * place.slope;
+      dloads.on[i].value = changed[i].force * place.value + state_.passage[i].force * changed[i].position * place.slope;
     }
     LineState d = hht_.at_rest_variation(dloads, state_.slack);
     std::copy_n(changed, pantographs, d.passage);

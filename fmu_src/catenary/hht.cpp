@@ -16,8 +16,7 @@ double rounded(double h) {
 SparseMatrix iteration_matrix(const Line& line, const HhtCoefficients& c) {
   const Parameters& p = line.p;
   return (1 + c.weight * c.gamma_h * p.damping.mass) * line.matrices.mass +
-         c.weight * c.gamma_h * p.damping.stiffness * line.matrices.wires +
-         c.weight * c.beta_h2 * line.stiffness();
+         c.weight * c.gamma_h * p.damping.stiffness * line.matrices.wires + c.weight * c.beta_h2 * line.stiffness();
 }
 
 }  // namespace
@@ -173,8 +172,7 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
   // u' K u from the internal forces, which hold K u, the slack droppers and less the contact forces.
   double strain = s.u.dot(s.internal) - s.u.dot(s.damping) + l1.dot(s.u);
   for (int j = 0; j < static_cast<int>(s.slack.size()); ++j)
-    if (s.slack[j] != 0)
-      strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
+    if (s.slack[j] != 0) strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
   s.elastic = 0.5 * strain;
 
   s.statistics.steps += 1;

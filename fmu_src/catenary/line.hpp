@@ -54,18 +54,18 @@ struct Passage {
 ZSPRING_MEMBERS(Passage, position, speed, force)
 
 struct LineState {
-  VectorXd u, v;      // m and 1, m/s and 1/s
-  VectorXd a;         // HHT's memory, common/hht.hpp
-  VectorXd a_slope;   // its rate
-  VectorXd internal;  // N and N m: C v + K u + slack droppers - contact forces
-  VectorXd damping;   // N and N m: C v
-  VectorXd slack;     // m, of the droppers
-  double h = 0;       // s, of the last step; 0 before the first
+  VectorXd u, v;                                              // m and 1, m/s and 1/s
+  VectorXd a;                                                 // HHT's memory, common/hht.hpp
+  VectorXd a_slope;                                           // its rate
+  VectorXd internal;                                          // N and N m: C v + K u + slack droppers - contact forces
+  VectorXd damping;                                           // N and N m: C v
+  VectorXd slack;                                             // m, of the droppers
+  double h = 0;                                               // s, of the last step; 0 before the first
   double kinetic = 0, elastic = 0, dissipated = 0, work = 0;  // J; elastic from the unloaded static state
   Passage passage[pantographs];
   Statistics statistics;
 };
-ZSPRING_MEMBERS(LineState, u, v, a, a_slope, internal, damping, slack, h, kinetic, elastic, dissipated, work,
-                passage, statistics)
+ZSPRING_MEMBERS(LineState, u, v, a, a_slope, internal, damping, slack, h, kinetic, elastic, dissipated, work, passage,
+                statistics)
 
 }  // namespace zspring::catenary

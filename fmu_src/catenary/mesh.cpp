@@ -39,8 +39,7 @@ Mesh::Mesh(const Parameters& p) {
   x.push_back(0);
   supports.push_back(0);
   for (int span = 0; span < p.line.spans; ++span) {
-    for (int i = 0; i < p.dropper.count; ++i)
-      droppers.push_back(mesh_to(span * p.line.span + p.dropper.position[i]));
+    for (int i = 0; i < p.dropper.count; ++i) droppers.push_back(mesh_to(span * p.line.span + p.dropper.position[i]));
     supports.push_back(mesh_to((span + 1) * p.line.span));
   }
 }

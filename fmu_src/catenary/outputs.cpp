@@ -23,9 +23,8 @@ double uplift_change(const View& x, const Place& at, const LineState& d, const P
 }
 double velocity_change(const View& x, const Place& at, double speed, const LineState& d, const Passage& moved) {
   const Eigen::Vector4d height = heights(x, at);
-  return at.value.dot(at.of(d.v)) + moved.position * at.slope.dot(at.of(x.s.v)) +
-         speed * at.slope.dot(at.of(d.u)) + moved.speed * at.slope.dot(height) +
-         speed * moved.position * at.curvature.dot(height);
+  return at.value.dot(at.of(d.v)) + moved.position * at.slope.dot(at.of(x.s.v)) + speed * at.slope.dot(at.of(d.u)) +
+         moved.speed * at.slope.dot(height) + speed * moved.position * at.curvature.dot(height);
 }
 
 double at_support(const View& x, const VectorXd& u, int i) {

@@ -12,10 +12,9 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : lin
   for (int i = 0; i < pantographs; ++i) {
     const Passage& at = placed[i] = initial_passage(line_.p, i, inputs.pantograph[i]);
     if (at.force != 0 && !line_.mesh.contains(at.position))
-      refuse(
-          "pantograph[%d].%s = %.10g m: must be within the line, 0 to %.10g m, as pantograph[%d].force = %.10g N",
-          i + 1, line_.p.travel == Travel::Speed ? "start" : "position", at.position, calculated_.line.length,
-          i + 1, at.force);
+      refuse("pantograph[%d].%s = %.10g m: must be within the line, 0 to %.10g m, as pantograph[%d].force = %.10g N",
+             i + 1, line_.p.travel == Travel::Speed ? "start" : "position", at.position, calculated_.line.length, i + 1,
+             at.force);
   }
   std::optional<LineState> rest = hht_.at_rest(loads_at(line_.mesh, placed));
   if (!rest)
@@ -37,8 +36,8 @@ std::optional<Discard> Simulation::leaves_line(const CommunicationStep& step) co
       const bool at_end = true;
       return Discard{
           tau,
-          text("pantograph[%d].x = %.10g m: must be within the line, 0 to %.10g m, while its force is %.10g N",
-               i + 1, here.position, calculated_.line.length, here.force),
+          text("pantograph[%d].x = %.10g m: must be within the line, 0 to %.10g m, while its force is %.10g N", i + 1,
+               here.position, calculated_.line.length, here.force),
           at_end};
     }
   return std::nullopt;

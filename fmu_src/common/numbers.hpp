@@ -51,8 +51,7 @@ struct Reader {
   void operator()(Count& x) {
     const double number = *next(1);
     constexpr double most = 9007199254740992;  // 2^53: up to there a double counts
-    if (!(number >= 0 && number <= most && number == std::floor(number)))
-      refuse("FMU state: %g is no count", number);
+    if (!(number >= 0 && number <= most && number == std::floor(number))) refuse("FMU state: %g is no count", number);
     x = static_cast<Count>(number);
   }
   template <class Vector>

@@ -48,16 +48,15 @@ inline bool all_finite(const Outputs& y) {
 
 }  // namespace zspring
 
-#define ZSPRING_OUTPUT(id, has_change, value_of_x, change_with_d)                                         \
-  template <class View>                                                                                   \
-  struct Output<Id::id, View> {                                                                           \
-    static_assert(is_continuous[static_cast<int>(Id::id)] == has_change, #id ": see common/outputs.hpp"); \
-    static auto value([[maybe_unused]] const View& x, [[maybe_unused]] int i) { return value_of_x; }      \
-    template <class State>                                                                                \
-    static double change([[maybe_unused]] const View& x, [[maybe_unused]] const State& d,                 \
-                         [[maybe_unused]] int i) {                                                        \
-      return change_with_d;                                                                               \
-    }                                                                                                     \
+#define ZSPRING_OUTPUT(id, has_change, value_of_x, change_with_d)                                                   \
+  template <class View>                                                                                             \
+  struct Output<Id::id, View> {                                                                                     \
+    static_assert(is_continuous[static_cast<int>(Id::id)] == has_change, #id ": see common/outputs.hpp");           \
+    static auto value([[maybe_unused]] const View& x, [[maybe_unused]] int i) { return value_of_x; }                \
+    template <class State>                                                                                          \
+    static double change([[maybe_unused]] const View& x, [[maybe_unused]] const State& d, [[maybe_unused]] int i) { \
+      return change_with_d;                                                                                         \
+    }                                                                                                               \
   };
 #define OUTPUT(id, value_of_x, change_with_d) ZSPRING_OUTPUT(id, true, value_of_x, change_with_d)
 #define LINEAR(id, member) OUTPUT(id, x.s.member, d.member)

@@ -223,8 +223,8 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,
-                                        const fmi2ValueReference known[], size_t n_known,
-                                        const fmi2Real known_change[], fmi2Real unknown_change[]) {
+                                        const fmi2ValueReference known[], size_t n_known, const fmi2Real known_change[],
+                                        fmi2Real unknown_change[]) {
   return guarded(c, readable, "fmi2GetDirectionalDerivative", [&](Instance& i) {
     need(unknown, n_unknown, "vUnknown_ref"), need(known, n_known, "vKnown_ref");
     need(known_change, n_known, "dvKnown"), need(unknown_change, n_unknown, "dvUnknown");
@@ -256,9 +256,7 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
   return guarded(c, 0, "fmi2CancelStep", [](Instance&) {});
 }
 
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind, fmi2Status*) {
-  return no_status(c, "fmi2GetStatus");
-}
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind, fmi2Status*) { return no_status(c, "fmi2GetStatus"); }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
   if (kind != fmi2LastSuccessfulTime) return no_status(c, "fmi2GetRealStatus");

@@ -58,8 +58,7 @@ void Instance::reset() {
 
 void Instance::setup_experiment(double start, bool has_stop, double stop) {
   if (!std::isfinite(start)) refuse("startTime = %g s: must be a finite number", start);
-  if (has_stop && !(stop >= start))
-    refuse("stopTime = %.10g s: must not be before startTime = %.10g s", stop, start);
+  if (has_stop && !(stop >= start)) refuse("stopTime = %.10g s: must not be before startTime = %.10g s", stop, start);
   has_stop_ = has_stop && !std::isinf(stop);
   stop_ = has_stop_ ? stop : 0;
   time_ = start;

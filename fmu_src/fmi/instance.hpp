@@ -34,11 +34,9 @@ class Instance {
   void set(const fmi2ValueReference references[], size_t n, Type type, const double values[]);
   void set_input_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[],
                              const double values[]);
-  void output_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[],
-                          double values[]);
-  void directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown,
-                              const fmi2ValueReference known[], size_t n_known, const double direction[],
-                              double result[]);
+  void output_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[], double values[]);
+  void directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown, const fmi2ValueReference known[],
+                              size_t n_known, const double direction[], double result[]);
 
   fmi2Status step(double from, double length);
   double last_successful_time() const { return time_; }

@@ -35,8 +35,7 @@ struct Binding {
    [](Parameters& p, double x) { p.member = static_cast<ZSPRING_MEMBER(Parameters, member)>(x); }}
 #define ZSPRING_CalculatedParameter(member) \
   {sizeof(double), nullptr, nullptr, [](const Calculated& c) { return c.member; }}
-#define ZSPRING_Input(member) \
-  {sizeof(Signal), nullptr, nullptr, nullptr, [](Inputs& u) -> Signal& { return u.member; }}
+#define ZSPRING_Input(member) {sizeof(Signal), nullptr, nullptr, nullptr, [](Inputs& u) -> Signal& { return u.member; }}
 #define ZSPRING_Output(place) {0, nullptr, nullptr, nullptr, nullptr, place}
 
 struct Variable {

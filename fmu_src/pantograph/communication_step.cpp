@@ -5,8 +5,7 @@ namespace zspring {
 // A force takes HHT's memory of the acceleration with it; else the first step would still feel the old force, an
 // error of first order. An imposed velocity costs the work of an impulse.
 void meet(const Hht& hht, const Boundary& b0, MechanicalState& s) {
-  if (hht.head_imposed())
-    s.work += 0.5 * hht.mechanics().mass[U1] * (b0.velocity * b0.velocity - s.v[U1] * s.v[U1]);
+  if (hht.head_imposed()) s.work += 0.5 * hht.mechanics().mass[U1] * (b0.velocity * b0.velocity - s.v[U1] * s.v[U1]);
   meet_variation(hht, b0, s);
 }
 

@@ -60,9 +60,8 @@ class CommunicationStep {
     bench.tune(held_.bench, p_.solver.step);
     const double rounding = rounding_of_time * bench.grid_step();
     const double end_time = held_.length + state.bench.carry;
-    double done = 0;  // s since the begin of the communication step, at a node or a cut
-    double next_node =
-        bench.to_next_node();  // s likewise; counted from the first, so that rounding does not add up
+    double done = 0;                          // s since the begin of the communication step, at a node or a cut
+    double next_node = bench.to_next_node();  // s likewise; counted from the first, so that rounding does not add up
     const double first_node = next_node;
     Count nodes = 0;
 
@@ -116,8 +115,8 @@ class CommunicationStep {
 
   // One internal step, halved as often as it takes.
   template <class BoundaryAt, class OnStep>
-  std::optional<Unsolved> cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0,
-                                const Boundary& b1, double begin, double h, int halvings, OnStep& on_step) const {
+  std::optional<Unsolved> cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0, const Boundary& b1,
+                                double begin, double h, int halvings, OnStep& on_step) const {
     MechanicalState next;
     const double h_last = s.h, hht_alpha = p_.solver.hht_alpha;
     move_memory(hht_alpha, h_last, h, s.a_slope, s.a);
@@ -135,8 +134,7 @@ class CommunicationStep {
     s.statistics.refinements += 1;
     Boundary middle;
     boundary(begin + 0.5 * h, middle);
-    if (const auto unsolved = cover(s, boundary, b0, middle, begin, 0.5 * h, halvings + 1, on_step))
-      return unsolved;
+    if (const auto unsolved = cover(s, boundary, b0, middle, begin, 0.5 * h, halvings + 1, on_step)) return unsolved;
     return cover(s, boundary, middle, b1, begin + 0.5 * h, 0.5 * h, halvings + 1, on_step);
   }
 

@@ -108,8 +108,7 @@ bool Hht::solve(const StepCoefficients& c, const Trial& t, Vector5& r) const {
   A.col(2) = c.weight * t.angle_slope[1] * t.head_tangent.col(2);
   A.col(3) = bw * t.head_tangent.col(3);
   for (int j = 0; j < 2; ++j)
-    A(j + 1, j + 1) +=
-        m_.mass[j + 1] * t.acceleration_slope[j] + c.weight * m_.moment_bound[j] * t.moment_slope[j];
+    A(j + 1, j + 1) += m_.mass[j + 1] * t.acceleration_slope[j] + c.weight * m_.moment_bound[j] * t.moment_slope[j];
   A(0, 0) += m_.mass[U1] + gw * p.c1;
   A(0, 3) -= gw * p.c1;
   A(3, 0) -= gw * p.c1;

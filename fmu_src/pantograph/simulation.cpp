@@ -4,8 +4,7 @@
 
 namespace zspring {
 
-Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
-    : mechanics_(parameters), hht_(mechanics_) {
+Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : mechanics_(parameters), hht_(mechanics_) {
   SimulationState state;
   state.mechanical = at_rest(inputs);
   state.motion.position = state.mechanical.boundary.position;
@@ -25,15 +24,13 @@ MechanicalState Simulation::at_rest(const Inputs& inputs) const {
   s.q = mechanics_.rest;
   if (const auto head = mechanics_.head_response(s.q)) s.internal = mechanics_.spring_force(s.q, *head);
   s.boundary = initial_boundary(inputs);
-  s.contact_force =
-      hht_.head_imposed() ? hht_.reaction(s.boundary, s.internal) : hht_.contact(s.boundary, 0, 0).force;
+  s.contact_force = hht_.head_imposed() ? hht_.reaction(s.boundary, s.internal) : hht_.contact(s.boundary, 0, 0).force;
   s.a = acceleration(hht_, s);
   return s;
 }
 
 std::optional<Discard> Simulation::run(const Held& held) {
-  const auto nothing = [](const MechanicalState&, const MechanicalState&, const Boundary&, const Boundary&,
-                          double) {};
+  const auto nothing = [](const MechanicalState&, const MechanicalState&, const Boundary&, const Boundary&, double) {};
   const std::optional<Unsolved> unsolved = CommunicationStep(hht_, held).run(state_, nothing);
   // The accelerations of HHT are its own; no output shows them.
   const MechanicalState& s = state_.mechanical;
@@ -85,9 +82,8 @@ std::optional<Text> Simulation::describe_imbalance() const {
   };
   for (const auto& i : inputs)
     if (i.acts && i.value != i.balanced)
-      return text(
-          "%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
-          i.name, i.value, i.unit, i.balanced, i.unit);
+      return text("%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
+                  i.name, i.value, i.unit, i.balanced, i.unit);
   return std::nullopt;
 }
 

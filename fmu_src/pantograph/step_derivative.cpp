@@ -10,9 +10,9 @@ double head_force_change(const Parameters& p, bool closed, const Boundary& db, d
 
 }  // namespace
 
-MechanicalState step_derivative(const Hht& hht, const MechanicalState& from, const Boundary& b0,
-                                const Boundary& b1, double h, const MechanicalState& to,
-                                const MechanicalState& dfrom, const Boundary& db0, const Boundary& db1) {
+MechanicalState step_derivative(const Hht& hht, const MechanicalState& from, const Boundary& b0, const Boundary& b1,
+                                double h, const MechanicalState& to, const MechanicalState& dfrom, const Boundary& db0,
+                                const Boundary& db1) {
   const Mechanics& m = hht.mechanics();
   const Parameters& p = m.parameters;
   const StepCoefficients c(m, h);

@@ -34,8 +34,7 @@ inline Vector4 length_gradient(const ZSpringParameters& z, const Shape& s) {
 
 }  // namespace
 
-std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta,
-                                                double gap) {
+std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta, double gap) {
   std::optional<ElementResponse> result;
   const std::optional<Shape> known = shape(z, alpha, beta, gap);
   if (!known) return result;
