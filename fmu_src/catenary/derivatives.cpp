@@ -43,11 +43,8 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
   // Only values vary; whether they are targets does not.
   Held changed{direction, length};
   for (int i = 0; i < pantographs; ++i) {
-    const PantographInputs& u = held_.inputs.pantograph[i];
-    PantographInputs& du = changed.inputs.pantograph[i];
-    du.force.has_derivatives = u.force.has_derivatives;
-    du.speed.has_derivatives = u.speed.has_derivatives;
-    du.position.has_derivatives = u.position.has_derivatives;
+    for (auto signal : {&PantographInputs::force, &PantographInputs::speed, &PantographInputs::position})
+      (changed.inputs.pantograph[i].*signal).has_derivatives = (held_.inputs.pantograph[i].*signal).has_derivatives;
   }
   const Passage nothing[pantographs] = {};
   const CommunicationStep step(line_, before_.passage, held_), change_of(line_, nothing, changed);

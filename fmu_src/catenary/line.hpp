@@ -54,14 +54,15 @@ struct Passage {
 ZSPRING_MEMBERS(Passage, position, speed, force)
 
 struct LineState {
-  VectorXd u, v;                                              // m and 1, m/s and 1/s
-  VectorXd a;                                                 // HHT's memory, common/hht.hpp
-  VectorXd a_slope;                                           // its rate
-  VectorXd internal;                                          // N and N m: C v + K u + slack droppers - contact forces
-  VectorXd damping;                                           // N and N m: C v
-  VectorXd slack;                                             // m, of the droppers
-  double h = 0;                                               // s, of the last step; 0 before the first
-  double kinetic = 0, elastic = 0, dissipated = 0, work = 0;  // J; elastic from the unloaded static state
+  VectorXd u, v;      // m and 1, m/s and 1/s
+  VectorXd a;         // HHT's memory, common/hht.hpp
+  VectorXd a_slope;   // its rate
+  VectorXd internal;  // N and N m: C v + K u + slack droppers - contact forces
+  VectorXd damping;   // N and N m: C v
+  VectorXd slack;     // m, of the droppers
+  double h = 0;       // s, of the last step; 0 before the first
+  // J; elastic from the unloaded static state
+  double kinetic = 0, elastic = 0, dissipated = 0, work = 0;
   Passage passage[pantographs];
   Statistics statistics;
 };

@@ -1,6 +1,4 @@
-#include "outputs.hpp"
-
-#include "droppers.hpp"
+#include "simulation.hpp"
 
 namespace zspring::catenary {
 namespace {
@@ -87,7 +85,7 @@ DISCRETE(solver_dot_iterations_max, x.s.statistics.iterations_max)
 
 namespace zspring::catenary {
 
-Outputs outputs(const View& x) { return output_values(x); }
-Outputs outputs_change(const View& x, const LineState& d) { return output_changes(x, d); }
+Outputs Simulation::present_outputs() const { return output_values(View(line_, state_)); }
+Outputs Simulation::change(const LineState& d) const { return output_changes(View(line_, state_), d); }
 
 }  // namespace zspring::catenary

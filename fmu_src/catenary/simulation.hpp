@@ -26,8 +26,8 @@ class Simulation final : public Model<Inputs, LineState, Held> {
   // Discarded where a pantograph that presses leaves the line, or the slack droppers could not be found.
   std::optional<Discard> run(const Held& held) override;
   std::optional<Discard> leaves_line(const CommunicationStep& step) const;
-  Outputs present_outputs() const override { return catenary::outputs({line_, state_}); }
-  Outputs change(const LineState& d) const { return catenary::outputs_change({line_, state_}, d); }
+  Outputs present_outputs() const override;
+  Outputs change(const LineState& d) const;  // of the outputs, with that of the state
   bool is_possible(const LineState& s) const override;
 
   Line line_;

@@ -52,6 +52,7 @@ struct Variable {
   bool is_parameter() const { return causality == Causality::Parameter; }
   bool is_input() const { return causality == Causality::Input; }
   bool is_output() const { return causality == Causality::Output; }
+  bool is_calculated() const { return !is_parameter() && !is_input(); }
   double get(const Parameters& p) const { return binding.parameter(p); }
   void set(Parameters& p, double x) const { binding.set_parameter(p, x); }
   double get(const Calculated& c) const { return binding.calculated(c); }

@@ -21,10 +21,11 @@ struct Ramp {
   double c[6] = {};  // coefficients in x = s / length
   double length = 0;
 
-  static Ramp to(double target, double value, double slope, double curvature, double length);
-  double value(double s) const;
-  double slope(double s) const;
-  double curvature(double s) const;
+  struct Point {
+    double value = 0, slope = 0, curvature = 0;
+  };
+  static Ramp to(double target, const Point& from, double length);
+  Point at(double s) const;
   double integral(double s) const;
 };
 ZSPRING_MEMBERS(Ramp, c, length)

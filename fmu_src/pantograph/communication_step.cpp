@@ -1,6 +1,18 @@
 #include "communication_step.hpp"
 
+#include <cmath>
+
 namespace zspring {
+
+Discard unsolved(double time, const Convergence& end) {
+  if (!std::isfinite(end.residual))
+    return {time,
+            text("no solution even after halving the internal step to 1/1024: the spring would have no length, or the "
+                 "values overflow")};
+  return {time,
+          text("no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, iterations: %d",
+               dof_name[end.dof], end.residual, end.dof == ALPHA || end.dof == BETA ? "N.m" : "N", end.iterations)};
+}
 
 // A force takes HHT's memory of the acceleration with it; else the first step would still feel the old force, an
 // error of first order. An imposed velocity costs the work of an impulse.

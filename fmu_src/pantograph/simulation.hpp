@@ -34,7 +34,8 @@ class Simulation final : public Model<Inputs, SimulationState, Held> {
   }
   std::optional<Discard> run(const Held& held) override;
   View view() const { return {hht_, state_.mechanical, state_.bench}; }
-  Outputs present_outputs() const override { return zspring::outputs(view()); }
+  Outputs present_outputs() const override;
+  Outputs change(const MechanicalState& d) const;  // of the outputs, with that of the state
   bool is_possible(const SimulationState& s) const override;
   MechanicalState at_rest(const Inputs& inputs) const;
   Boundary initial_boundary(const Inputs& inputs) const;
