@@ -16,20 +16,12 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import NoReturn
 
-UNBOUNDED = "HUGE_VAL"
+OTHER_MEMBER = {"solver.alpha": "solver.hht_alpha"}  # in the models alpha is the angle of a rod
 DECLARED = "initialDependencies"
 
 
 def refuse(message) -> NoReturn:
     sys.exit(f"model description: {message}")
-
-
-def enumerations(root):
-    """{type name: ["1 Force", ...]}"""
-    return {
-        t.get("name"): [f"{item.get('value')} {item.get('name')}" for item in t.find("Enumeration")]
-        for t in root.iter("SimpleType")
-    }
 
 
 def identifier_and_index(name):
@@ -41,35 +33,6 @@ def identifier_and_index(name):
     return (head + tail).replace(".", "_dot_"), int(index or 1) - 1
 
 
-def causality(variable):
-    """As an enumerator of C++."""
-    name = variable.get("causality")
-    return name[0].upper() + name[1:]
-
-
-def row(index, variable, enums):
-    """A row of the table of variables but for the last column, as in the heading that `table` writes."""
-    name = variable.get("name")
-    identifier, element = identifier_and_index(name)
-    value = variable[0]
-    if variable.get("valueReference") != str(index):
-        refuse(f"{name}: valueReference must be {index}, its place in the list")
-    items = enums.get(value.get("declaredType"), [])
-    low, high = value.get("min"), value.get("max")
-    if items:
-        low, high = "1", str(len(items))
-    start = value.get("start")
-    if start is not None:
-        for bound, outside in ((low, float.__lt__), (high, float.__gt__)):
-            if bound is not None and outside(float(start), float(bound)):
-                refuse(f"{name}: start = {start} is outside its bound {bound}")
-    return (
-        f'{identifier}, {element}, "{name}", {value.tag}, {causality(variable)}, '
-        f'{str(variable.get("variability") == "tunable").lower()}, "{value.get("unit", "")}", {start or 0}, '
-        f'{low or "-" + UNBOUNDED}, {high or UNBOUNDED}, "{", ".join(items)}"'
-    )
-
-
 def macro(name, columns, rows):
     """Text that defines a macro which applies its argument to each row."""
     return f"// {columns}\n#define ZSPRING_{name}(X) \\\n" + " \\\n".join(f"  X({r})" for r in rows) + "\n"
@@ -77,28 +40,43 @@ def macro(name, columns, rows):
 
 def table(root, guid):
     """Text of variables.inc."""
-    variables, enums, identifiers, outputs = list(root.find("ModelVariables")), enumerations(root), {}, []
-    for v in variables:
-        identifier, element = identifier_and_index(v.get("name"))
-        continuous = v[0].tag == "Real" and v.get("variability", "continuous") == "continuous"
-        identifiers[identifier] = f"{identifier}, {causality(v)}, {str(continuous).lower()}"
-        if v.get("causality") == "output":
+    items = {
+        t.get("name"): [f"{i.get('value')} {i.get('name')}" for i in t.iter("Item")] for t in root.iter("SimpleType")
+    }
+    identifiers, outputs, rows = {}, [], []
+    for place, variable in enumerate(root.find("ModelVariables")):
+        name, causality, value = variable.get("name"), variable.get("causality"), variable[0]
+        if variable.get("valueReference") != str(place):
+            refuse(f"{name}: valueReference must be {place}, its place in the list")
+        allowed = items.get(value.get("declaredType"), [])
+        low, high = ("1", str(len(allowed))) if allowed else (value.get("min"), value.get("max"))
+        start = value.get("start")
+        for bound, outside in ((low, float.__lt__), (high, float.__gt__)):
+            if start is not None and bound is not None and outside(float(start), float(bound)):
+                refuse(f"{name}: start = {start} is outside its bound {bound}")
+        identifier, element = identifier_and_index(name)
+        if causality == "output":
+            continuous = value.tag == "Real" and variable.get("variability", "continuous") == "continuous"
+            identifiers[identifier] = f"{identifier}, {str(continuous).lower()}"
+            known_as = len(outputs)
             outputs.append(f"{identifier}, {element}")
-    place = iter(range(len(outputs)))
-    rows = [
-        f"{row(i, v, enums)}, {next(place) if v.get('causality') == 'output' else -1}" for i, v in enumerate(variables)
-    ]
+        else:
+            known_as = OTHER_MEMBER.get(name) or re.sub(r"\[\d+\]", f"[{element}]", name)
+        rows.append(
+            f'"{name}", {value.tag}, {causality[0].upper() + causality[1:]}, '
+            f'{str(variable.get("variability") == "tunable").lower()}, "{value.get("unit", "")}", {start or 0}, '
+            f'{low or "-HUGE_VAL"}, {high or "HUGE_VAL"}, "{", ".join(allowed)}", {known_as}'
+        )
+    columns = (
+        "name, type, causality, tunable, unit, start, min, max, items of an enumeration, "
+        "member of the model's struct or place among the outputs"
+    )
     return (
         "// Generated from the model description.\n"
         f'#define ZSPRING_GUID "{guid}"\n'
-        f'#define ZSPRING_MODEL_IDENTIFIER "{root.find("CoSimulation").get("modelIdentifier")}"\n'
-        + macro("IDENTIFIERS", "identifier, causality, continuous", identifiers.values())
-        + macro(
-            "VARIABLES",
-            "identifier, index, name, type, causality, tunable, unit, start, min, max, "
-            "items of an enumeration, place among the outputs",
-            rows,
-        )
+        f"#define ZSPRING_OUTPUT_COUNT {len(outputs)}\n"
+        + macro("IDENTIFIERS", "identifier, continuous", identifiers.values())
+        + macro("VARIABLES", columns, rows)
         + macro("OUTPUTS", "identifier, index", outputs)
         + macro("LOG_CATEGORIES", "name", [c.get("name") for c in root.iter("Category")])
     )

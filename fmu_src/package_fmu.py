@@ -9,12 +9,13 @@ The same content gives the same bytes: entries are sorted and carry a fixed time
 
 from __future__ import annotations
 
-import argparse
 import html
 import os
 import string
+import sys
 import xml.etree.ElementTree as ET
 import zipfile
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from source_form import list_sources
@@ -41,21 +42,13 @@ def licenses() -> str:
     return "\n\n".join(texts)
 
 
-def table(header: list[str], rows: list[list[str]]) -> str:
+def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """HTML table of plain-text cells; the first column is set as code."""
     lines = ["<table>", "<tr>" + "".join(f"<th>{html.escape(h)}</th>" for h in header) + "</tr>"]
     for first, *others in rows:
         cells = "".join(f"<td>{html.escape(cell)}</td>" for cell in others)
         lines.append(f"<tr><td><code>{html.escape(first)}</code></td>{cells}</tr>")
     return "\n".join([*lines, "</table>"])
-
-
-def enumerations(model: ET.Element) -> dict[str, dict[str, str]]:
-    """Names of the items by value, by enumeration type."""
-    return {
-        simple_type.attrib["name"]: {item.attrib["value"]: item.attrib["name"] for item in simple_type.iter("Item")}
-        for simple_type in model.iter("SimpleType")
-    }
 
 
 def bounds(typed: ET.Element) -> str:
@@ -70,31 +63,25 @@ def bounds(typed: ET.Element) -> str:
 
 def variable_tables(model: ET.Element) -> str:
     """One table per causality, with unit, start value and bounds as the model description has them."""
-    items = enumerations(model)
+    items = {
+        (t.get("name"), i.get("value")): i.attrib["name"] for t in model.iter("SimpleType") for i in t.iter("Item")
+    }
     parts = []
     for causality, heading in CAUSALITIES:
-        rows = []
-        for variable in model.iterfind("ModelVariables/*"):
-            if variable.get("causality") != causality:
-                continue
+        rows = [["Name", "Unit or type", "Start", "Allowed", "Meaning"]]
+        for variable in model.iterfind(f"ModelVariables/ScalarVariable[@causality='{causality}']"):
             typed = variable[0]
-            declared = typed.get("declaredType")
-            start = typed.get("start", "")
+            declared, start = typed.get("declaredType"), typed.get("start", "")
             note = "; may be changed during the simulation" if variable.get("variability") == "tunable" else ""
+            unit_or_type = declared or typed.get("unit") or typed.tag
+            meaning = variable.get("description", "") + note
             rows.append(
-                [
-                    variable.attrib["name"],
-                    declared or typed.get("unit") or typed.tag,
-                    items[declared][start] if declared and start else start,
-                    bounds(typed),
-                    variable.get("description", "") + note,
-                ]
+                [variable.attrib["name"], unit_or_type, items.get((declared, start), start), bounds(typed), meaning]
             )
-        # Leave out the columns that are empty in the whole table.
-        header = ["Name", "Unit or type", "Start", "Allowed", "Meaning"]
-        used = [i for i in range(len(header)) if any(row[i] for row in rows)]
-        parts.append(f'<h3 id="{causality}">{heading}</h3>')
-        parts.append(table([header[i] for i in used], [[row[i] for i in used] for row in rows]))
+        # Without the columns that are empty in the whole table.
+        used = [column for column in zip(*rows) if any(column[1:])]
+        header, *cells = zip(*used)
+        parts += [f'<h3 id="{causality}">{heading}</h3>', table(header, cells)]
     return "\n".join(parts)
 
 
@@ -102,9 +89,8 @@ def enumeration_tables(model: ET.Element) -> str:
     """One table per enumeration type."""
     parts = []
     for simple_type in model.iter("SimpleType"):
-        parts.append(f"<h3>{html.escape(simple_type.attrib['name'])}</h3>")
         rows = [[i.attrib["name"], i.attrib["value"], i.get("description", "")] for i in simple_type.iter("Item")]
-        parts.append(table(["Item", "Value", "Meaning"], rows))
+        parts += [f"<h3>{html.escape(simple_type.attrib['name'])}</h3>", table(["Item", "Value", "Meaning"], rows)]
     return "\n".join(parts)
 
 
@@ -132,7 +118,6 @@ def write_fmu(
     libraries   shared libraries by FMI platform name
     sources     files of the folder sources/ by their path in it, where the FMU is to have its source form
     """
-    sources = sources or {}
     description = model_description.read_bytes()
     entries = {
         "modelDescription.xml": list_sources(description, sources) if sources else description,
@@ -140,10 +125,8 @@ def write_fmu(
         "documentation/index.html": documentation(model_description, resources).encode(),
         "documentation/licenses/license.txt": licenses().encode(),
     }
-    for platform, library in libraries.items():
-        entries[f"binaries/{platform}/{library.name}"] = library.read_bytes()
-    for path, content in sources.items():
-        entries[f"sources/{path}"] = content
+    entries |= {f"binaries/{platform}/{file.name}": file.read_bytes() for platform, file in libraries.items()}
+    entries |= {f"sources/{path}": content for path, content in (sources or {}).items()}
 
     unfinished = fmu.with_name(fmu.name + ".part")
     with zipfile.ZipFile(unfinished, "w") as archive:
@@ -156,22 +139,10 @@ def write_fmu(
     os.replace(unfinished, fmu)
 
 
-def library_argument(text: str) -> tuple[str, Path]:
-    platform, _, library = text.partition("=")
-    if not library:
-        raise argparse.ArgumentTypeError(f"{text}: must be PLATFORM=LIBRARY")
-    return platform, Path(library)
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("model_description", type=Path)
-    parser.add_argument("resources", type=Path)
-    parser.add_argument("fmu", type=Path)
-    parser.add_argument("libraries", type=library_argument, nargs="+", metavar="PLATFORM=LIBRARY")
-    arguments = parser.parse_args()
-    write_fmu(arguments.model_description, arguments.resources, arguments.fmu, dict(arguments.libraries))
+def main(model_description: str, resources: str, fmu: str, *libraries: str) -> None:
+    by_platform = {platform: Path(library) for platform, library in (text.split("=", 1) for text in libraries)}
+    write_fmu(Path(model_description), Path(resources), Path(fmu), by_platform)
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])

@@ -16,14 +16,21 @@ inline Loads loads_at(const Mesh& mesh, const Passage passage[pantographs]) {
 }
 
 inline Passage initial_passage(const Parameters& p, int i, const PantographInputs& u) {
-  if (p.travel == Travel::Speed) return {p.start[i], u.speed.value, u.force.value};
+  if (p.travel == Travel::Speed) return {p.pantograph[i].start, u.speed.value, u.force.value};
   return {u.position.value, 0, u.force.value};
 }
 
+// What holds during one communication step.
+struct Held {
+  Inputs inputs;
+  double length = 0;  // s; 0 before the first step
+};
+ZSPRING_MEMBERS(Held, inputs, length)
+
 class CommunicationStep {
  public:
-  CommunicationStep(const Line& line, const Passage begin[pantographs], const Inputs& inputs, double length)
-      : line_(line), begin_(begin), inputs_(inputs), length_(length) {}
+  CommunicationStep(const Line& line, const Passage begin[pantographs], const Held& held)
+      : line_(line), begin_(begin), inputs_(held.inputs), length_(held.length) {}
 
   // Linear in begin and inputs: of variations it returns the variation.
   Passage at(int i, double tau) const {
@@ -59,7 +66,7 @@ class CommunicationStep {
     return inputs_.pantograph[i].speed.from(begin_[i].speed, length_).rate_at(length_);
   }
 
-  Count internal_steps() const { return zspring::internal_steps(length_, line_.p.step); }
+  Count internal_steps() const { return zspring::internal_steps(length_, line_.p.solver.step); }
   double length() const { return length_; }
 
  private:

@@ -16,24 +16,24 @@ Outputs Simulation::output_rates() {
   d.dissipated = s.v.dot(s.damping);
   d.work = loads.dot(s.v);
   d.elastic = s.v.dot(s.internal) - d.dissipated + d.work;
-  const CommunicationStep step(line_, before_.passage, held_, length_);
+  const CommunicationStep step(line_, before_.passage, held_);
   for (int i = 0; i < pantographs; ++i) {
     d.passage[i].position = s.passage[i].speed;
-    if (length_ > 0) d.passage[i].speed = step.speed_rate(i);
+    if (held_.length > 0) d.passage[i].speed = step.speed_rate(i);
   }
   return change(d);
 }
 
 Outputs Simulation::outputs_change(const Inputs& direction) {
-  if (length_ == 0) {
+  const double length = held_.length;
+  if (length == 0) {
     Passage changed[pantographs];
     Loads dloads = loads_at(line_.mesh, state_.passage);
     for (int i = 0; i < pantographs; ++i) {
       changed[i] = initial_passage(line_.p, i, direction.pantograph[i]);
       if (line_.p.travel == Travel::Speed) changed[i].position = 0;  // a parameter
       const Place& place = dloads.on[i].place;
-      dloads.on[i].value =
-          changed[i].force * place.value + state_.passage[i].force * changed[i].position * place.slope;
+      dloads.on[i].value = changed[i].force * place.value + state_.passage[i].force * changed[i].position * place.slope;
     }
     LineState d = hht_.at_rest_variation(dloads, state_.slack);
     std::copy_n(changed, pantographs, d.passage);
@@ -41,19 +41,15 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     return change(d);
   }
   // Only values vary; whether they are targets does not.
-  Inputs changed = direction;
+  Held changed{direction, length};
   for (int i = 0; i < pantographs; ++i) {
-    const PantographInputs& u = held_.pantograph[i];
-    PantographInputs& du = changed.pantograph[i];
-    du.force.has_derivatives = u.force.has_derivatives;
-    du.speed.has_derivatives = u.speed.has_derivatives;
-    du.position.has_derivatives = u.position.has_derivatives;
+    for (auto signal : {&PantographInputs::force, &PantographInputs::speed, &PantographInputs::position})
+      (changed.inputs.pantograph[i].*signal).has_derivatives = (held_.inputs.pantograph[i].*signal).has_derivatives;
   }
   const Passage nothing[pantographs] = {};
-  const CommunicationStep step(line_, before_.passage, held_, length_),
-      change_of(line_, nothing, changed, length_);
+  const CommunicationStep step(line_, before_.passage, held_), change_of(line_, nothing, changed);
   const double n = static_cast<double>(step.internal_steps());
-  const StepFactors& factors = hht_.factors(length_ / n);
+  const StepFactors& factors = hht_.factors(length / n);
 
   LineState d;
   d.u = d.v = d.a = d.internal = VectorXd::Zero(line_.mesh.dofs());
@@ -69,7 +65,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
   }
   const LineState& from = n > 1 ? now : before_;
   for (Count k = 1; k <= step.internal_steps(); ++k) {
-    const Loads l1 = step.loads(k / n * length_), dl1 = step.loads_change(change_of, k / n * length_);
+    const Loads l1 = step.loads(k / n * length), dl1 = step.loads_change(change_of, k / n * length);
     if (k < n) {
       next = now;
       if (!hht_.step(factors, l0, l1, next)) break;  // not reached: it was solved before
@@ -85,7 +81,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     l0 = l1;
     dl0 = dl1;
   }
-  for (int i = 0; i < pantographs; ++i) d.passage[i] = change_of.at(i, length_);
+  for (int i = 0; i < pantographs; ++i) d.passage[i] = change_of.at(i, length);
   return change(d);
 }
 

@@ -100,8 +100,7 @@ std::optional<int> Slackening::solve(const VectorXd& trial, const MatrixXd& comp
   return std::nullopt;
 }
 
-void Slackening::solve_variation(const VectorXd& trial, const MatrixXd& compliance, const VectorXd& s,
-                                 VectorXd& ds) {
+void Slackening::solve_variation(const VectorXd& trial, const MatrixXd& compliance, const VectorXd& s, VectorXd& ds) {
   count_ = 0;
   for (Eigen::Index i = 0; i < s.size(); ++i)
     if (s[i] > 0) active_[count_++] = static_cast<int>(i);

@@ -15,15 +15,14 @@ double rounded(double h) {
 // M + (1 + hht_alpha) (gamma h C + beta h^2 K)
 SparseMatrix iteration_matrix(const Line& line, const HhtCoefficients& c) {
   const Parameters& p = line.p;
-  return (1 + c.weight * c.gamma_h * p.damping_mass) * line.matrices.mass +
-         c.weight * c.gamma_h * p.damping_stiffness * line.matrices.wires +
-         c.weight * c.beta_h2 * line.stiffness();
+  return (1 + c.weight * c.gamma_h * p.damping.mass) * line.matrices.mass +
+         c.weight * c.gamma_h * p.damping.stiffness * line.matrices.wires + c.weight * c.beta_h2 * line.stiffness();
 }
 
 }  // namespace
 
 StepFactors::StepFactors(const Line& line, double step)
-    : HhtCoefficients(line.p.hht_alpha, step),
+    : HhtCoefficients(line.p.solver.hht_alpha, step),
       factor(iteration_matrix(line, *this)),
       droppers(line.mesh, factor, weight * beta_h2) {}
 
@@ -39,7 +38,7 @@ Hht::Hht(const Line& line)
       ma_(line.mesh.dofs()),
       old_v_(line.mesh.dofs()),
       trial_(line.shape.stiffness.size()) {
-  factors(line.p.step);
+  factors(line.p.solver.step);
 }
 
 const StepFactors& Hht::factors(double h) {
@@ -125,11 +124,11 @@ void Hht::predict(const StepFactors& f, const Loads& l1, LineState& s) {
   const Parameters& p = line_.p;
   s.u += f.h * s.v + f.old_position * s.a;
   s.v += f.old_velocity * s.a;
-  y_ = s.u + p.damping_stiffness * s.v;
+  y_ = s.u + p.damping.stiffness * s.v;
   wires_.multiply(y_, x_);
   line_.add_springs(s.u, x_);
   mass_.multiply(s.v, mv_);
-  x_ += p.damping_mass * mv_;
+  x_ += p.damping.mass * mv_;
   s.a = f.hht_alpha * s.internal - f.weight * x_;
   l1.add_to(s.a, f.weight);
   f.factor.solve(s.a);
@@ -167,14 +166,13 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
   s.kinetic = 0.5 * s.v.dot(mv_);
   s.dissipated += 0.25 * f.h * old_v_.dot(s.damping);
   wires_.multiply(s.v, x_);
-  s.damping = p.damping_stiffness * x_ + p.damping_mass * mv_;
+  s.damping = p.damping.stiffness * x_ + p.damping.mass * mv_;
   s.dissipated += 0.25 * f.h * (2 * old_v_.dot(s.damping) + s.v.dot(s.damping));
   s.work += 0.5 * (l0.dot(s.u) + l1.dot(s.u) - work_before);
   // u' K u from the internal forces, which hold K u, the slack droppers and less the contact forces.
   double strain = s.u.dot(s.internal) - s.u.dot(s.damping) + l1.dot(s.u);
   for (int j = 0; j < static_cast<int>(s.slack.size()); ++j)
-    if (s.slack[j] != 0)
-      strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
+    if (s.slack[j] != 0) strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
   s.elastic = 0.5 * strain;
 
   s.statistics.steps += 1;

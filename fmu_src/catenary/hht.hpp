@@ -32,8 +32,7 @@ class Hht {
   // At rest in equilibrium under `loads`; none where no set of slack droppers fits.
   std::optional<LineState> at_rest(const Loads& loads);
   LineState at_rest_variation(const Loads& dloads, const VectorXd& slack);  // slack: of the state at rest
-  // From the loads `l0`, at its begin, to `l1`. False, with `s` without meaning, when no set of slack droppers
-  // fits.
+  // From the loads `l0`, at its begin, to `l1`. False, with `s` without meaning, when no set of slack droppers fits.
   [[nodiscard]] bool step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s);
   // The same for a variation `d` of the state that the step led to `to` from; what is slack stays slack. Of
   // the energies it knows the kinetic one.

@@ -51,6 +51,7 @@ struct Passage {
   double speed = 0;     // m/s
   double force = 0;     // N
 };
+ZSPRING_MEMBERS(Passage, position, speed, force)
 
 struct LineState {
   VectorXd u, v;      // m and 1, m/s and 1/s
@@ -59,18 +60,13 @@ struct LineState {
   VectorXd internal;  // N and N m: C v + K u + slack droppers - contact forces
   VectorXd damping;   // N and N m: C v
   VectorXd slack;     // m, of the droppers
-  double kinetic = 0, elastic = 0, dissipated = 0, work = 0;  // J; elastic from the unloaded static state
-  double h = 0;                                               // s, of the last step; 0 before the first
+  double h = 0;       // s, of the last step; 0 before the first
+  // J; elastic from the unloaded static state
+  double kinetic = 0, elastic = 0, dissipated = 0, work = 0;
   Passage passage[pantographs];
   Statistics statistics;
 };
-
-template <class Visitor>
-void visit(LineState& s, Visitor&& f) {
-  f(s.u), f(s.v), f(s.a), f(s.a_slope), f(s.internal), f(s.damping), f(s.slack), f(s.h);
-  f(s.kinetic), f(s.elastic), f(s.dissipated), f(s.work);
-  for (Passage& p : s.passage) f(p.position), f(p.speed), f(p.force);
-  visit(s.statistics, f);
-}
+ZSPRING_MEMBERS(LineState, u, v, a, a_slope, internal, damping, slack, h, kinetic, elastic, dissipated, work, passage,
+                statistics)
 
 }  // namespace zspring::catenary

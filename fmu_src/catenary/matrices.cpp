@@ -73,9 +73,9 @@ Matrices::Matrices(const Parameters& p, const Mesh& mesh) : weight(VectorXd::Zer
   }
   for (size_t i = 1; i + 1 < mesh.supports.size(); ++i) {
     const int contact = deflection(mesh.supports[i], Contact), messenger = deflection(mesh.supports[i], Messenger);
-    inertia.emplace_back(contact, contact, p.steady_arm_mass);
-    supports.push_back({contact, p.steady_arm_stiffness});
-    supports.push_back({messenger, p.support_stiffness});
+    inertia.emplace_back(contact, contact, p.steady_arm.mass);
+    supports.push_back({contact, p.steady_arm.stiffness});
+    supports.push_back({messenger, p.support.stiffness});
   }
   std::vector<int> anchors;
   for (int dof = 0; dof < mesh.dofs(); ++dof)

@@ -14,13 +14,13 @@ void check_droppers(const Parameters& p) {
   double last = 0;
   for (int i = 0; i < p.dropper.count; ++i) {
     const double x = p.dropper.position[i];
-    const double low = last + least_distance, high = p.span - least_distance;
+    const double low = last + least_distance, high = p.line.span - least_distance;
     if (x < low || x > high)
       refuse(
           "dropper.position[%d] = %.10g m: must be at least %.10g m and at most %.10g m, after the dropper before "
           "it "
           "and within line.span = %.10g m",
-          i + 1, x, low, high, p.span);
+          i + 1, x, low, high, p.line.span);
     last = x;
   }
 }
@@ -31,16 +31,16 @@ Mesh::Mesh(const Parameters& p) {
   check_droppers(p);
   const auto mesh_to = [&](double end) {
     const double begin = x.back();
-    const int elements = std::max(1, static_cast<int>(std::ceil((end - begin) / p.element - 1e-9)));
+    const int elements = std::max(1, static_cast<int>(std::ceil((end - begin) / p.mesh.element - 1e-9)));
     for (int i = 1; i < elements; ++i) x.push_back(begin + (end - begin) * i / elements);
     x.push_back(end);
     return stations() - 1;
   };
   x.push_back(0);
   supports.push_back(0);
-  for (int span = 0; span < p.spans; ++span) {
-    for (int i = 0; i < p.dropper.count; ++i) droppers.push_back(mesh_to(span * p.span + p.dropper.position[i]));
-    supports.push_back(mesh_to((span + 1) * p.span));
+  for (int span = 0; span < p.line.spans; ++span) {
+    for (int i = 0; i < p.dropper.count; ++i) droppers.push_back(mesh_to(span * p.line.span + p.dropper.position[i]));
+    supports.push_back(mesh_to((span + 1) * p.line.span));
   }
 }
 

@@ -1,6 +1,4 @@
-#include "outputs.hpp"
-
-#include "droppers.hpp"
+#include "simulation.hpp"
 
 namespace zspring::catenary {
 namespace {
@@ -23,9 +21,8 @@ double uplift_change(const View& x, const Place& at, const LineState& d, const P
 }
 double velocity_change(const View& x, const Place& at, double speed, const LineState& d, const Passage& moved) {
   const Eigen::Vector4d height = heights(x, at);
-  return at.value.dot(at.of(d.v)) + moved.position * at.slope.dot(at.of(x.s.v)) +
-         speed * at.slope.dot(at.of(d.u)) + moved.speed * at.slope.dot(height) +
-         speed * moved.position * at.curvature.dot(height);
+  return at.value.dot(at.of(d.v)) + moved.position * at.slope.dot(at.of(x.s.v)) + speed * at.slope.dot(at.of(d.u)) +
+         moved.speed * at.slope.dot(height) + speed * moved.position * at.curvature.dot(height);
 }
 
 double at_support(const View& x, const VectorXd& u, int i) {
@@ -44,7 +41,7 @@ const Passage stays;
 
 View::View(const Line& overhead, const LineState& state) : line(overhead), s(state) {
   for (int i = 0; i < pantographs; ++i) contact[i] = line.mesh.at(s.passage[i].position);
-  for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point_position[i]);
+  for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point.position[i]);
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (int j = 0; j < static_cast<int>(line.mesh.droppers.size()); ++j) {
     const double force = dropper_force(j);
@@ -88,7 +85,7 @@ DISCRETE(solver_dot_iterations_max, x.s.statistics.iterations_max)
 
 namespace zspring::catenary {
 
-Outputs outputs(const View& x) { return output_values(x); }
-Outputs outputs_change(const View& x, const LineState& d) { return output_changes(x, d); }
+Outputs Simulation::present_outputs() const { return output_values(View(line_, state_)); }
+Outputs Simulation::change(const LineState& d) const { return output_changes(View(line_, state_), d); }
 
 }  // namespace zspring::catenary

@@ -19,8 +19,4 @@ struct View {
   int weakest = 0, strongest = 0;                  // droppers
 };
 
-Outputs outputs(const View& x);
-// With the variation `d` of the state.
-Outputs outputs_change(const View& x, const LineState& d);
-
 }  // namespace zspring::catenary

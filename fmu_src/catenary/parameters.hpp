@@ -33,24 +33,41 @@ struct DropperParameters {
   double clamp_messenger;          // kg, on the messenger
 };
 
+// Named and nested as the variables of the model description are, and in their order: so they find each other.
 struct Parameters {
-  int spans;
-  double span;         // m
-  double encumbrance;  // m, of the messenger over the contact wire at the supports
+  struct {
+    int spans;
+    double span;         // m
+    double encumbrance;  // m, of the messenger over the contact wire at the supports
+  } line;
   WireParameters contact_wire, messenger;
   DropperParameters dropper;
-  double support_stiffness;     // N/m, under the messenger
-  double steady_arm_mass;       // kg, on the contact wire at the supports
-  double steady_arm_stiffness;  // N/m
-  double damping_mass;          // 1/s, Rayleigh: C = damping_mass M + damping_stiffness K of the wires
-  double damping_stiffness;     // s
-  double gravity;               // m/s2
+  struct {
+    double stiffness;  // N/m, under the messenger
+  } support;
+  struct {
+    double mass;       // kg, on the contact wire at the supports
+    double stiffness;  // N/m
+  } steady_arm;
+  struct {
+    double mass;       // 1/s, Rayleigh: C = mass M + stiffness K of the wires
+    double stiffness;  // s
+  } damping;
+  double gravity;  // m/s2
   Travel travel;
-  double start[pantographs];           // m, Travel::Speed
-  double point_position[most_points];  // m
-  double element;                      // m, longest element
-  double step;                         // s, largest internal step
-  double hht_alpha;                    // [-1/3, 0]
+  struct {
+    double start;  // m, Travel::Speed
+  } pantograph[pantographs];
+  struct {
+    double position[most_points];  // m
+  } point;
+  struct {
+    double element;  // m, longest element
+  } mesh;
+  struct {
+    double step;       // s, largest internal step
+    double hht_alpha;  // [-1/3, 0]
+  } solver;
 };
 
 // Each reaches its value at the end of the communication step, in a straight line from the last one.
@@ -59,21 +76,21 @@ struct PantographInputs {
   Signal speed;     // m/s, Travel::Speed
   Signal position;  // m, Travel::Position
 };
+ZSPRING_MEMBERS(PantographInputs, force, speed, position)
 
 struct Inputs {
   PantographInputs pantograph[pantographs];
 };
-
-template <class Visitor>
-void visit(Inputs& u, Visitor&& f) {
-  for (PantographInputs& p : u.pantograph)
-    zspring::visit(p.force, f), zspring::visit(p.speed, f), zspring::visit(p.position, f);
-}
+ZSPRING_MEMBERS(Inputs, pantograph)
 
 // The calculated parameters.
-struct LineFacts {
-  double length = 0;             // m
-  double dropper_force_min = 0;  // N, in the static state
+struct Calculated {
+  struct {
+    double length = 0;  // m
+  } line;
+  struct {
+    double static_force_min = 0;  // N
+  } dropper;
 };
 
 }  // namespace zspring::catenary

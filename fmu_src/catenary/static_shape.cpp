@@ -7,8 +7,7 @@ namespace zspring::catenary {
 namespace {
 
 // Deflections of the wires under `load` N, some degrees of freedom held at heights.
-VectorXd hang(const SparseMatrix& wires, const VectorXd& load, const std::vector<int>& held,
-              const VectorXd& heights) {
+VectorXd hang(const SparseMatrix& wires, const VectorXd& load, const std::vector<int>& held, const VectorXd& heights) {
   VectorXd given = VectorXd::Zero(load.size());
   for (size_t i = 0; i < held.size(); ++i) given[held[i]] = heights[static_cast<Eigen::Index>(i)];
   VectorXd x = load - wires * given;
@@ -37,8 +36,7 @@ StaticShape static_shape(const Parameters& p, const Mesh& mesh, const Matrices& 
     return hang(m.wires, load, held, Eigen::Map<const VectorXd>(heights.data(), static_cast<int>(heights.size())));
   };
   // The matrices hold the anchors at 0: the messenger's heights are counted from the encumbrance.
-  for (int station : {0, last})
-    hold_at(deflection(station, Contact), 0), hold_at(deflection(station, Messenger), 0);
+  for (int station : {0, last}) hold_at(deflection(station, Contact), 0), hold_at(deflection(station, Messenger), 0);
   for (size_t i = 1; i + 1 < mesh.supports.size(); ++i) hold_at(deflection(mesh.supports[i], Messenger), 0);
   for (int j = 0; j < n; ++j) hold_at(deflection(mesh.droppers[j], Contact), -p.dropper.sag[j % p.dropper.count]);
   const VectorXd contact_wire = hanging(-m.weight);
@@ -57,21 +55,19 @@ StaticShape static_shape(const Parameters& p, const Mesh& mesh, const Matrices& 
     }
     shape.height = hanging(load);
     for (int station = 0; station <= last; ++station)
-      shape.height[deflection(station, Messenger)] += p.encumbrance;
+      shape.height[deflection(station, Messenger)] += p.line.encumbrance;
     for (int j = 0; j < n; ++j)
-      shape.length[j] = shape.height[deflection(mesh.droppers[j], Messenger)] -
-                        shape.height[deflection(mesh.droppers[j], Contact)];
+      shape.length[j] =
+          shape.height[deflection(mesh.droppers[j], Messenger)] - shape.height[deflection(mesh.droppers[j], Contact)];
     const VectorXd now = 0.5 * p.dropper.mass * p.gravity * shape.length;
     half_weight_change = n > 0 ? (now - half_weight).cwiseAbs().maxCoeff() : 0;
     half_weight = now;
   }
   for (int j = 0; j < n; ++j) {
     if (!(shape.length[j] > 0))
-      refuse_dropper(p, j,
-                     text("the dropper would be %.6g m long; line.encumbrance must be larger", shape.length[j]));
+      refuse_dropper(p, j, text("the dropper would be %.6g m long; line.encumbrance must be larger", shape.length[j]));
     if (!(shape.tension[j] >= 0))
-      refuse_dropper(p, j,
-                     text("in the static state the dropper would have to push, with %.6g N", -shape.tension[j]));
+      refuse_dropper(p, j, text("in the static state the dropper would have to push, with %.6g N", -shape.tension[j]));
     shape.stiffness[j] = p.dropper.EA > 0 ? p.dropper.EA / shape.length[j] : p.dropper.stiffness;
   }
   return shape;

@@ -1,18 +1,20 @@
-// What the FMI layer needs of a model.
+// What the FMI layer needs of a model, and what models have in common.
 #pragma once
 
 #include <optional>
 
-#include "failure.hpp"
 #include "numbers.hpp"
 #include "outputs.hpp"
+#include "time.hpp"
 
 namespace zspring {
 
 // A simulation, communication step by communication step, from the initial state that its constructor makes of
 // (const Parameters&, const Inputs&); that throws Refusal for what makes no model. It keeps no copy of the
 // parameters: of those referred to, the tunable ones may change between steps.
-template <class Parameters, class Inputs>
+//
+// State is all that changes; Held, with `inputs` and `length`, what holds during one communication step.
+template <class Inputs, class State, class Held>
 class Model {
  public:
   Model() = default;
@@ -20,14 +22,29 @@ class Model {
   Model& operator=(const Model&) = delete;
 
   // Over `length` > 0 s. Does not allocate.
-  virtual std::optional<Discard> advance(const Inputs& inputs, double length) = 0;
+  std::optional<Discard> advance(const Inputs& inputs, double length) {
+    const Held held = hold(inputs, length);
+    if (std::optional<Discard> discard = too_long(length, largest_internal_step(held))) return discard;
+    begin_ = state_;
+    std::optional<Discard> discard = run(held);
+    forget_outputs();
+    if (!discard && !all_finite(outputs())) discard = Discard{length, text("%s", overflow)};
+    if (discard) {
+      state_ = std::move(begin_);
+      forget_outputs();
+    } else {
+      before_ = std::move(begin_);
+      held_ = held;
+    }
+    return discard;
+  }
 
   // At the end of the last step; made once for each state.
   const Outputs& outputs() {
     if (!outputs_) outputs_ = present_outputs();
     return *outputs_;
   }
-  // To be called where parameters or state changed otherwise than by advance().
+  // To be called where parameters changed.
   void forget_outputs() { outputs_.reset(); }
   // d outputs / d time at the end of the last step.
   virtual Outputs output_rates() = 0;
@@ -37,25 +54,41 @@ class Model {
 
   // For the log: what does not fit together at the start; what the solver did in the whole simulation; what it did
   // in the last step, where that is unusual.
-  virtual std::optional<Text> describe_imbalance() const = 0;
+  virtual std::optional<Text> describe_imbalance() const { return std::nullopt; }
   virtual Text describe_run() const = 0;
-  virtual std::optional<Text> describe_step() const = 0;
+  virtual std::optional<Text> describe_step() const { return std::nullopt; }
 
   // All of the state but the parameters.
-  virtual void write(Writer& writer) = 0;
+  void write(Writer& writer) { visit(state_, writer), visit(before_, writer), visit(held_, writer); }
   // Throws Refusal where these numbers are those of no simulation.
   void restore(Reader& reader) {
-    read(reader);
+    visit(state_, reader), visit(before_, reader), visit(held_, reader);
     forget_outputs();
-    if (!is_possible() || !all_finite(outputs()))
+    if (!(is_possible(state_) && is_possible(before_) && held_.length >= 0) ||
+        too_long(held_.length, largest_internal_step(held_)) || !all_finite(outputs()))
       refuse("FMU state: holds numbers that no simulation leaves behind");
   }
 
  protected:
   ~Model() = default;
+
+  // To be called by the constructor: the simulation begins in this state.
+  void begin(State state, Held held) {
+    state_ = before_ = begin_ = std::move(state);
+    held_ = std::move(held);
+    if (!all_finite(outputs())) refuse(overflow);
+  }
+
+  virtual Held hold(const Inputs& inputs, double length) const = 0;
+  virtual double largest_internal_step(const Held& held) const = 0;
+  // Leads state_ from begin_ through a communication step, or to anywhere if that is discarded.
+  virtual std::optional<Discard> run(const Held& held) = 0;
   virtual Outputs present_outputs() const = 0;
-  virtual void read(Reader& reader) = 0;
-  virtual bool is_possible() const = 0;  // whether what was read could be a simulation's
+  virtual bool is_possible(const State& state) const = 0;  // whether what was read could be a simulation's
+
+  State state_, before_;  // before_: at the begin of the last communication step
+  Held held_;             // in that; of length 0 before the first
+  State begin_;           // of a step under way
 
  private:
   std::optional<Outputs> outputs_;

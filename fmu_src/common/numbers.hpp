@@ -1,18 +1,31 @@
-// A state as numbers in fixed order: written by a visit() of its parts, and read back by the same one.
+// A state as numbers in fixed order: written by visit(), and read back by the same one.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "failure.hpp"
+#include "members.hpp"
 #include "statistics.hpp"
 
 namespace zspring {
 
 using Numbers = std::vector<double>;
+
+// Takes `f` to each number and vector of numbers in `x`, whose structs have ZSPRING_MEMBERS.
+template <class T, class Visitor>
+void visit(T& x, Visitor& f) {
+  if constexpr (std::is_array_v<T>)
+    for (auto& element : x) visit(element, f);
+  else if constexpr (std::is_aggregate_v<T>)
+    std::apply([&](auto&... member) { (visit(member, f), ...); }, members(x));
+  else
+    f(x);
+}
 
 struct Writer {
   Numbers& out;
@@ -38,8 +51,7 @@ struct Reader {
   void operator()(Count& x) {
     const double number = *next(1);
     constexpr double most = 9007199254740992;  // 2^53: up to there a double counts
-    if (!(number >= 0 && number <= most && number == std::floor(number)))
-      refuse("FMU state: %g is no count", number);
+    if (!(number >= 0 && number <= most && number == std::floor(number))) refuse("FMU state: %g is no count", number);
     x = static_cast<Count>(number);
   }
   template <class Vector>

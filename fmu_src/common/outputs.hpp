@@ -12,36 +12,18 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 
 #include "variables.inc"
 
 namespace zspring {
 
-enum class Causality { Parameter, CalculatedParameter, Input, Output };
-
-// One for each variable or array of variables.
-#define ZSPRING_ENUMERATOR(id, causality, continuous) id,
+// One for each output or array of outputs.
+#define ZSPRING_ENUMERATOR(id, continuous) id,
 enum class Id { ZSPRING_IDENTIFIERS(ZSPRING_ENUMERATOR) };
-#undef ZSPRING_ENUMERATOR
+#define ZSPRING_CONTINUOUS(id, continuous) continuous,
+inline constexpr bool is_continuous[] = {ZSPRING_IDENTIFIERS(ZSPRING_CONTINUOUS)};
 
-struct Kind {
-  Causality causality;
-  bool continuous;
-};
-
-constexpr Kind kind_of(Id id) {
-#define ZSPRING_KIND(id, causality, continuous) {Causality::causality, continuous},
-  constexpr Kind all[] = {ZSPRING_IDENTIFIERS(ZSPRING_KIND)};
-#undef ZSPRING_KIND
-  return all[static_cast<int>(id)];
-}
-
-#define ZSPRING_ONE(id, i) +1
-inline constexpr std::size_t output_count = 0 ZSPRING_OUTPUTS(ZSPRING_ONE);
-#undef ZSPRING_ONE
-
-using Outputs = std::array<double, output_count>;  // in the order of the model description
+using Outputs = std::array<double, ZSPRING_OUTPUT_COUNT>;  // in the order of the model description
 
 template <Id id, class View>
 struct Output;  // see above
@@ -50,14 +32,12 @@ template <class View>
 Outputs output_values(const View& x) {
 #define ZSPRING_VALUE(id, i) static_cast<double>(Output<Id::id, View>::value(x, i)),
   return {ZSPRING_OUTPUTS(ZSPRING_VALUE)};
-#undef ZSPRING_VALUE
 }
 
 template <class View, class State>
 Outputs output_changes(const View& x, const State& d) {
 #define ZSPRING_CHANGE(id, i) Output<Id::id, View>::change(x, d, i),
   return {ZSPRING_OUTPUTS(ZSPRING_CHANGE)};
-#undef ZSPRING_CHANGE
 }
 
 inline bool all_finite(const Outputs& y) {
@@ -68,17 +48,15 @@ inline bool all_finite(const Outputs& y) {
 
 }  // namespace zspring
 
-#define ZSPRING_OUTPUT(id, is_continuous, value_of_x, change_with_d)                                 \
-  template <class View>                                                                              \
-  struct Output<Id::id, View> {                                                                      \
-    static_assert(kind_of(Id::id).causality == Causality::Output, #id ": is no output");             \
-    static_assert(kind_of(Id::id).continuous == is_continuous, #id ": see common/outputs.hpp");      \
-    static auto value([[maybe_unused]] const View& x, [[maybe_unused]] int i) { return value_of_x; } \
-    template <class State>                                                                           \
-    static double change([[maybe_unused]] const View& x, [[maybe_unused]] const State& d,            \
-                         [[maybe_unused]] int i) {                                                   \
-      return change_with_d;                                                                          \
-    }                                                                                                \
+#define ZSPRING_OUTPUT(id, has_change, value_of_x, change_with_d)                                                   \
+  template <class View>                                                                                             \
+  struct Output<Id::id, View> {                                                                                     \
+    static_assert(is_continuous[static_cast<int>(Id::id)] == has_change, #id ": see common/outputs.hpp");           \
+    static auto value([[maybe_unused]] const View& x, [[maybe_unused]] int i) { return value_of_x; }                \
+    template <class State>                                                                                          \
+    static double change([[maybe_unused]] const View& x, [[maybe_unused]] const State& d, [[maybe_unused]] int i) { \
+      return change_with_d;                                                                                         \
+    }                                                                                                               \
   };
 #define OUTPUT(id, value_of_x, change_with_d) ZSPRING_OUTPUT(id, true, value_of_x, change_with_d)
 #define LINEAR(id, member) OUTPUT(id, x.s.member, d.member)

@@ -1,6 +1,8 @@
 // An input between communication points.
 #pragma once
 
+#include "members.hpp"
+
 namespace zspring {
 
 // value + rate tau + 1/2 curvature tau^2, tau since the last communication point.
@@ -21,10 +23,6 @@ struct Signal {
     return has_derivatives ? *this : Signal{last, (value - last) / length};
   }
 };
-
-template <class Visitor>
-void visit(Signal& s, Visitor&& f) {
-  f(s.value), f(s.rate), f(s.curvature), f(s.has_derivatives), f(s.has_curvature);
-}
+ZSPRING_MEMBERS(Signal, value, rate, curvature, has_derivatives, has_curvature)
 
 }  // namespace zspring

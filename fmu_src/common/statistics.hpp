@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "members.hpp"
+
 namespace zspring {
 
 using Count = std::int64_t;
@@ -22,10 +24,6 @@ struct Statistics {
     return steps > 0 ? static_cast<double>(iterations) / static_cast<double>(steps) : 0;
   }
 };
-
-template <class Visitor>
-void visit(Statistics& s, Visitor&& f) {
-  f(s.steps), f(s.iterations), f(s.iterations_max), f(s.refinements);
-}
+ZSPRING_MEMBERS(Statistics, steps, iterations, iterations_max, refinements)
 
 }  // namespace zspring

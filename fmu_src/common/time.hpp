@@ -20,8 +20,8 @@ inline Count internal_steps(double length, double largest) {
 // More internal steps would take hours: such a length is a mistake.
 inline std::optional<Discard> too_long(double length, double internal_step) {
   if (length <= 1e9 * internal_step) return std::nullopt;
-  return Discard{0, text("communicationStepSize = %.10g s: must be at most 1e9 internal steps, of %.3g s", length,
-                         internal_step)};
+  return Discard{
+      0, text("communicationStepSize = %.10g s: must be at most 1e9 internal steps, of %.3g s", length, internal_step)};
 }
 
 }  // namespace zspring

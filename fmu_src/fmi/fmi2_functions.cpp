@@ -1,6 +1,7 @@
 // The C API of FMI 2.0 for co-simulation: each function checks what the standard asks for, calls the instance and
 // maps what was thrown to a status. No exception crosses this boundary and there is no global state.
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <type_traits>
 
@@ -15,9 +16,10 @@ namespace {
 
 using State = zspring::Numbers;
 
-// `action` does what the call is for; where it returns no status, it is fmi2OK.
-template <class Action>
-fmi2Status guarded(fmi2Component component, unsigned allowed, const char* function, Action&& action) {
+// `action`, of an instance and the arguments, does what the call is for; where it returns no status, it is fmi2OK.
+template <class Action, class... Arguments>
+fmi2Status guarded(fmi2Component component, unsigned allowed, const char* function, Action&& action,
+                   Arguments... arguments) {
   auto* instance = static_cast<Instance*>(component);
   if (!instance) return fmi2Error;
   const auto fail = [&](const char* reason) {
@@ -26,10 +28,10 @@ fmi2Status guarded(fmi2Component component, unsigned allowed, const char* functi
   };
   if (!(instance->phase & allowed)) return fail(text("not allowed %s", phase_name(instance->phase)).chars);
   try {
-    if constexpr (std::is_void_v<decltype(action(*instance))>)
-      return action(*instance), fmi2OK;
+    if constexpr (std::is_void_v<std::invoke_result_t<Action, Instance&, Arguments...>>)
+      return std::invoke(action, *instance, arguments...), fmi2OK;
     else
-      return action(*instance);
+      return std::invoke(action, *instance, arguments...);
   } catch (const Refusal& e) {
     return fail(e.what());
   } catch (const std::exception& e) {
@@ -43,6 +45,13 @@ fmi2Status guarded(fmi2Component component, unsigned allowed, const char* functi
 
 void need(const void* pointer, size_t n, const char* name) {
   if (n > 0 && !pointer) refuse("%s: must not be NULL", name);
+}
+
+void store(State numbers, fmi2FMUstate* state) {
+  if (*state)
+    *static_cast<State*>(*state) = std::move(numbers);
+  else
+    *state = new State(std::move(numbers));
 }
 
 template <class Value>
@@ -59,12 +68,8 @@ fmi2Status set_values(fmi2Component c, const char* function, Type type, const fm
                       const Value values[]) {
   return guarded(c, settable, function, [&](Instance& i) {
     need(vr, n, "vr"), need(values, n, "value");
-    // On the stack for the usual few, so that setting inputs between steps does not allocate.
-    double few[32];
-    std::vector<double> many(n > 32 ? n : 0);
-    double* numbers = n > 32 ? many.data() : few;
-    for (size_t k = 0; k < n; ++k) numbers[k] = static_cast<double>(values[k]);
-    i.set(vr, n, type, numbers);
+    for (size_t k = 0; k < n; ++k) i.check_settable(vr[k], type, values[k]);  // all or nothing
+    for (size_t k = 0; k < n; ++k) i.set(vr[k], values[k]);
   });
 }
 
@@ -91,7 +96,7 @@ const char* fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 const char* fmi2GetVersion(void) { return fmi2Version; }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) {
-  return guarded(c, any_phase, "fmi2SetDebugLogging", [&](Instance& i) {
+  return guarded(c, any_phase, __func__, [&](Instance& i) {
     if (const char* unknown = i.log.enable(on != fmi2False, n, categories))
       refuse("category %s: is not a log category of this FMU", unknown);
   });
@@ -123,71 +128,59 @@ void fmi2FreeInstance(fmi2Component c) { delete static_cast<Instance*>(c); }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean /*tolerance_defined*/, fmi2Real /*tolerance*/,
                                fmi2Real start, fmi2Boolean has_stop, fmi2Real stop) {
-  return guarded(c, Instantiated, "fmi2SetupExperiment",
-                 [&](Instance& i) { i.setup_experiment(start, has_stop != fmi2False, stop); });
+  return guarded(c, Instantiated, __func__, &Instance::setup_experiment, start, has_stop != fmi2False, stop);
 }
-
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return guarded(c, Instantiated, "fmi2EnterInitializationMode", [](Instance& i) { i.enter_initialization(); });
+  return guarded(c, Instantiated, __func__, &Instance::enter_initialization);
 }
-
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  return guarded(c, Initialization, "fmi2ExitInitializationMode", [](Instance& i) { i.exit_initialization(); });
+  return guarded(c, Initialization, __func__, &Instance::exit_initialization);
 }
-
-fmi2Status fmi2Terminate(fmi2Component c) {
-  return guarded(c, stepping, "fmi2Terminate", [](Instance& i) { i.terminate(); });
-}
-
-fmi2Status fmi2Reset(fmi2Component c) {
-  return guarded(c, any_phase, "fmi2Reset", [](Instance& i) { i.reset(); });
-}
+fmi2Status fmi2Terminate(fmi2Component c) { return guarded(c, stepping, __func__, &Instance::terminate); }
+fmi2Status fmi2Reset(fmi2Component c) { return guarded(c, any_phase, __func__, &Instance::reset); }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
-  return get_values(c, "fmi2GetReal", Type::Real, vr, n, value);
+  return get_values(c, __func__, Type::Real, vr, n, value);
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Integer value[]) {
-  return get_values(c, "fmi2GetInteger", Type::Integer, vr, n, value);
+  return get_values(c, __func__, Type::Integer, vr, n, value);
 }
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Boolean value[]) {
-  return get_values(c, "fmi2GetBoolean", Type::Boolean, vr, n, value);
+  return get_values(c, __func__, Type::Boolean, vr, n, value);
 }
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference[], size_t n, fmi2String[]) {
-  return no_strings(c, readable, "fmi2GetString", n);
+  return no_strings(c, readable, __func__, n);
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Real value[]) {
-  return set_values(c, "fmi2SetReal", Type::Real, vr, n, value);
+  return set_values(c, __func__, Type::Real, vr, n, value);
 }
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Integer value[]) {
-  return set_values(c, "fmi2SetInteger", Type::Integer, vr, n, value);
+  return set_values(c, __func__, Type::Integer, vr, n, value);
 }
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Boolean value[]) {
-  return set_values(c, "fmi2SetBoolean", Type::Boolean, vr, n, value);
+  return set_values(c, __func__, Type::Boolean, vr, n, value);
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference[], size_t n, const fmi2String[]) {
-  return no_strings(c, settable, "fmi2SetString", n);
+  return no_strings(c, settable, __func__, n);
 }
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return guarded(c, any_phase, "fmi2GetFMUstate", [&](Instance& i) {
+  return guarded(c, any_phase, __func__, [&](Instance& i) {
     need(state, 1, "FMUstate");
-    if (*state)
-      *static_cast<State*>(*state) = i.snapshot();
-    else
-      *state = new State(i.snapshot());
+    store(i.snapshot(), state);
   });
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return guarded(c, any_phase, "fmi2SetFMUstate", [&](Instance& i) {
+  return guarded(c, any_phase, __func__, [&](Instance& i) {
     need(state, 1, "FMUstate");
     i.restore(*static_cast<State*>(state));
   });
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return guarded(c, any_phase, "fmi2FreeFMUstate", [&](Instance&) {
+  return guarded(c, any_phase, __func__, [&](Instance&) {
     if (!state) return;
     delete static_cast<State*>(*state);
     *state = nullptr;
@@ -195,14 +188,14 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  return guarded(c, any_phase, "fmi2SerializedFMUstateSize", [&](Instance&) {
+  return guarded(c, any_phase, __func__, [&](Instance&) {
     need(state, 1, "FMUstate"), need(size, 1, "size");
     *size = serialized_size(*static_cast<State*>(state));
   });
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  return guarded(c, any_phase, "fmi2SerializeFMUstate", [&](Instance&) {
+  return guarded(c, any_phase, __func__, [&](Instance&) {
     need(state, 1, "FMUstate"), need(bytes, 1, "serializedState");
     const State& numbers = *static_cast<State*>(state);
     if (size < serialized_size(numbers)) refuse("size: is less than fmi2SerializedFMUstateSize told");
@@ -211,21 +204,18 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
-  return guarded(c, any_phase, "fmi2DeSerializeFMUstate", [&](Instance&) {
+  return guarded(c, any_phase, __func__, [&](Instance&) {
     need(bytes, 1, "serializedState"), need(state, 1, "FMUstate");
     State numbers = deserialize(bytes, size);
     Instance::check_state(numbers);
-    if (*state)
-      *static_cast<State*>(*state) = std::move(numbers);
-    else
-      *state = new State(std::move(numbers));
+    store(std::move(numbers), state);
   });
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,
-                                        const fmi2ValueReference known[], size_t n_known,
-                                        const fmi2Real known_change[], fmi2Real unknown_change[]) {
-  return guarded(c, readable, "fmi2GetDirectionalDerivative", [&](Instance& i) {
+                                        const fmi2ValueReference known[], size_t n_known, const fmi2Real known_change[],
+                                        fmi2Real unknown_change[]) {
+  return guarded(c, readable, __func__, [&](Instance& i) {
     need(unknown, n_unknown, "vUnknown_ref"), need(known, n_known, "vKnown_ref");
     need(known_change, n_known, "dvKnown"), need(unknown_change, n_unknown, "dvUnknown");
     i.directional_derivative(unknown, n_unknown, known, n_known, known_change, unknown_change);
@@ -234,7 +224,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                                        const fmi2Integer order[], const fmi2Real value[]) {
-  return guarded(c, settable, "fmi2SetRealInputDerivatives", [&](Instance& i) {
+  return guarded(c, settable, __func__, [&](Instance& i) {
     need(vr, n, "vr"), need(order, n, "order"), need(value, n, "value");
     i.set_input_derivatives(vr, n, order, value);
   });
@@ -242,46 +232,35 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                                         const fmi2Integer order[], fmi2Real value[]) {
-  return guarded(c, after_step, "fmi2GetRealOutputDerivatives", [&](Instance& i) {
+  return guarded(c, after_step, __func__, [&](Instance& i) {
     need(vr, n, "vr"), need(order, n, "order"), need(value, n, "value");
     i.output_derivatives(vr, n, order, value);
   });
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real length, fmi2Boolean /*no_set_state_prior*/) {
-  return guarded(c, stepping, "fmi2DoStep", [&](Instance& i) { return i.step(from, length); });
+  return guarded(c, stepping, __func__, &Instance::step, from, length);
 }
-
 fmi2Status fmi2CancelStep(fmi2Component c) {
-  return guarded(c, 0, "fmi2CancelStep", [](Instance&) {});
-}
-
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind, fmi2Status*) {
-  return no_status(c, "fmi2GetStatus");
+  return guarded(c, 0, __func__, [](Instance&) {});
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
-  if (kind != fmi2LastSuccessfulTime) return no_status(c, "fmi2GetRealStatus");
-  return guarded(c, after_step, "fmi2GetRealStatus", [&](Instance& i) {
+  if (kind != fmi2LastSuccessfulTime) return no_status(c, __func__);
+  return guarded(c, after_step, __func__, [&](Instance& i) {
     need(value, 1, "value");
     *value = i.last_successful_time();
   });
 }
-
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind, fmi2Integer*) {
-  return no_status(c, "fmi2GetIntegerStatus");
-}
-
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
-  if (kind != fmi2Terminated) return no_status(c, "fmi2GetBooleanStatus");
-  return guarded(c, after_step, "fmi2GetBooleanStatus", [&](Instance& i) {
+  if (kind != fmi2Terminated) return no_status(c, __func__);
+  return guarded(c, after_step, __func__, [&](Instance& i) {
     need(value, 1, "value");
     *value = i.wants_to_end();
   });
 }
-
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind, fmi2String*) {
-  return no_status(c, "fmi2GetStringStatus");
-}
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind, fmi2Status*) { return no_status(c, __func__); }
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind, fmi2Integer*) { return no_status(c, __func__); }
+fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind, fmi2String*) { return no_status(c, __func__); }
 
 }  // extern "C"

@@ -28,7 +28,7 @@ bool Instance::visit_values(Visitor&& f) {
     same_model = same_model && (v.tunable || x == before);
   }
   visit(inputs_, f);
-  f(has_stop_), f(stop_), f(time_), f(stepped_);
+  f(stop_), f(time_), f(stepped_);
   return same_model;
 }
 

@@ -43,29 +43,21 @@ const Variable& Instance::variable(unsigned reference, Type type) const {
 
 void Instance::reset() {
   phase = Instantiated;
-  for (const Variable& v : variables)
-    if (v.is_parameter()) v.set(parameters_, v.start);
   inputs_ = {};
-  for (const Variable& v : variables)
-    if (v.is_input()) v.signal(inputs_).value = v.start;
-  has_stop_ = false;
-  stop_ = 0;
+  for (unsigned i = 0; i < variable_count; ++i)
+    if (!variables[i].is_calculated()) set(i, variables[i].start);
+  stop_ = never;
   time_ = 0;
   stepped_ = false;
   forget_discard();
-  simulation_.reset();
 }
 
 void Instance::setup_experiment(double start, bool has_stop, double stop) {
   if (!std::isfinite(start)) refuse("startTime = %g s: must be a finite number", start);
-  if (has_stop && !(stop >= start))
-    refuse("stopTime = %.10g s: must not be before startTime = %.10g s", stop, start);
-  has_stop_ = has_stop && !std::isinf(stop);
-  stop_ = has_stop_ ? stop : 0;
+  if (has_stop && !(stop >= start)) refuse("stopTime = %.10g s: must not be before startTime = %.10g s", stop, start);
+  stop_ = has_stop ? std::min(stop, never) : never;
   time_ = start;
 }
-
-void Instance::enter_initialization() { phase = Initialization; }
 
 void Instance::exit_initialization() {
   simulation();
@@ -91,27 +83,21 @@ double Instance::get(unsigned reference, Type type) {
   return type == Type::Real ? y : std::min<double>(y, std::numeric_limits<fmi2Integer>::max());
 }
 
-void Instance::check_settable(const Variable& v) const {
-  if (v.causality == Causality::Output || v.causality == Causality::CalculatedParameter)
-    refuse("%s: is calculated by the FMU and cannot be set", v.name);
-  if (v.causality == Causality::Parameter && !v.tunable && !(phase & before_start))
+void Instance::check_settable(unsigned reference, Type type, double x) const {
+  const Variable& v = variable(reference, type);
+  if (v.is_calculated()) refuse("%s: is calculated by the FMU and cannot be set", v.name);
+  if (v.is_parameter() && !v.tunable && !(phase & before_start))
     refuse("%s: is a fixed parameter and can be set before the end of initialization only", v.name);
+  check_value(v, x);
 }
 
-void Instance::set(const fmi2ValueReference references[], size_t n, Type type, const double values[]) {
-  for (size_t i = 0; i < n; ++i) {
-    const Variable& v = variable(references[i], type);
-    check_settable(v);
-    check_value(v, values[i]);
-  }
+void Instance::set(unsigned reference, double x) {
+  const Variable& v = variables[reference];
   discarded_length_ = 0;
-  for (size_t i = 0; i < n; ++i) {
-    const Variable& v = variables[references[i]];
-    if (v.is_parameter())
-      v.set(parameters_, values[i]);
-    else
-      v.signal(inputs_).value = values[i];
-  }
+  if (v.is_parameter())
+    v.set(parameters_, x);
+  else
+    v.signal(inputs_).value = x;
   if (phase & before_start)
     simulation_.reset();
   else
@@ -161,8 +147,7 @@ void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t
   }
   for (size_t i = 0; i < n_unknown; ++i) {
     const Variable& v = variable(unknown[i], Type::Real);
-    if (v.is_parameter() || v.is_input())
-      refuse("%s: must be an output to be unknown in a directional derivative", v.name);
+    if (!v.is_calculated()) refuse("%s: must be an output to be unknown in a directional derivative", v.name);
   }
   const Outputs y = simulation().outputs_change(change);
   for (size_t i = 0; i < n_unknown; ++i) {
@@ -178,7 +163,7 @@ fmi2Status Instance::step(double from, double length) {
   if (!(std::abs(from - time_) <= rounding))
     refuse("currentCommunicationPoint = %.17g s: must be %.17g s, where the last step ended", from, time_);
   const double to = from + length;
-  if (has_stop_ && to > stop_ + rounding)
+  if (to > stop_ + rounding)
     refuse("communicationStepSize = %.10g s: leads to %.17g s, past stopTime = %.17g s", length, to, stop_);
 
   Simulation& s = *simulation_;

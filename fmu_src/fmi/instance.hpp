@@ -4,6 +4,7 @@
 // line and fmi2Error.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "log.hpp"
@@ -24,21 +25,20 @@ class Instance {
   Instance& operator=(const Instance&) = delete;
 
   void setup_experiment(double start, bool has_stop, double stop);
-  void enter_initialization();
+  void enter_initialization() { phase = Initialization; }
   void exit_initialization();
   void terminate();
   void reset();
 
   double get(unsigned reference, Type type);
+  void check_settable(unsigned reference, Type type, double x) const;
+  void set(unsigned reference, double x);  // once checked
   // All or nothing.
-  void set(const fmi2ValueReference references[], size_t n, Type type, const double values[]);
   void set_input_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[],
                              const double values[]);
-  void output_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[],
-                          double values[]);
-  void directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown,
-                              const fmi2ValueReference known[], size_t n_known, const double direction[],
-                              double result[]);
+  void output_derivatives(const fmi2ValueReference references[], size_t n, const fmi2Integer orders[], double values[]);
+  void directional_derivative(const fmi2ValueReference unknown[], size_t n_unknown, const fmi2ValueReference known[],
+                              size_t n_known, const double direction[], double result[]);
 
   fmi2Status step(double from, double length);
   double last_successful_time() const { return time_; }
@@ -56,8 +56,9 @@ class Instance {
   Log log;
 
  private:
+  static constexpr double never = std::numeric_limits<double>::max();  // s; finite, as all numbers of a state are
+
   const Variable& variable(unsigned reference, Type type) const;
-  void check_settable(const Variable& v) const;
   Simulation& simulation();  // built anew where parameters or inputs changed before the first step
   void forget_discard() { wants_to_end_ = false, discarded_length_ = 0; }
   template <class Visitor>
@@ -65,8 +66,7 @@ class Instance {
 
   Parameters parameters_;
   Inputs inputs_;
-  bool has_stop_;
-  double stop_;  // s, 0 where there is none
+  double stop_;  // s
   double time_;
   bool stepped_;
   bool wants_to_end_;

@@ -50,10 +50,8 @@ Numbers deserialize(const char* bytes, std::size_t size) {
   Header h;
   if (size < sizeof h) refuse("serialized state: too short to be one");
   std::memcpy(&h, bytes, sizeof h);
-  if (std::memcmp(h.magic, magic, sizeof magic) != 0 ||
-      std::memcmp(h.guid, ZSPRING_GUID, sizeof(ZSPRING_GUID)) != 0)
-    refuse(
-        "serialized state: comes from another FMU or another version of this one; must have GUID " ZSPRING_GUID);
+  if (std::memcmp(h.magic, magic, sizeof magic) != 0 || std::memcmp(h.guid, ZSPRING_GUID, sizeof(ZSPRING_GUID)) != 0)
+    refuse("serialized state: comes from another FMU or another version of this one; must have GUID " ZSPRING_GUID);
   if (h.count != (size - sizeof h) / sizeof(double) || (size - sizeof h) % sizeof(double) != 0)
     refuse("serialized state: its length is not what its header tells; it was cut or extended");
   Numbers numbers(h.count);

@@ -13,8 +13,7 @@ enum Phase : unsigned {
   Error = 32,
 };
 
-inline constexpr unsigned any_phase =
-    Instantiated | Initialization | StepComplete | StepFailed | Terminated | Error;
+inline constexpr unsigned any_phase = Instantiated | Initialization | StepComplete | StepFailed | Terminated | Error;
 inline constexpr unsigned before_start = Instantiated | Initialization;
 inline constexpr unsigned stepping = StepComplete | StepFailed;
 inline constexpr unsigned settable = before_start | stepping;

@@ -17,36 +17,30 @@ Count steps_in_period(double frequency, double largest_step) {
   return std::max(fewest_steps_per_period, static_cast<Count>(needed));
 }
 
-Ramp Ramp::to(double target, double value, double slope, double curvature, double length) {
-  const double rise = target - value, d = slope * length, c = 0.5 * curvature * length * length;
-  return {{value, d, c, 10 * rise - 6 * d - 3 * c, -15 * rise + 8 * d + 3 * c, 6 * rise - 3 * d - c}, length};
+Ramp Ramp::to(double target, const Point& from, double length) {
+  const double rise = target - from.value, d = from.slope * length, c = 0.5 * from.curvature * length * length;
+  return {{from.value, d, c, 10 * rise - 6 * d - 3 * c, -15 * rise + 8 * d + 3 * c, 6 * rise - 3 * d - c}, length};
 }
 
-double Ramp::value(double s) const {
+Ramp::Point Ramp::at(double s) const {
   const double x = std::min(s / length, 1.0);
-  return c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
-}
-
-double Ramp::slope(double s) const {
-  const double x = s / length;
-  if (x >= 1) return 0;
-  return (c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))) / length;
-}
-
-double Ramp::curvature(double s) const {
-  const double x = s / length;
-  if (x >= 1) return 0;
-  return (2 * c[2] + x * (6 * c[3] + x * (12 * c[4] + x * 20 * c[5]))) / (length * length);
+  Point p;
+  p.value = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
+  if (x == 1) return p;
+  p.slope = (c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))) / length;
+  p.curvature = (2 * c[2] + x * (6 * c[3] + x * (12 * c[4] + x * 20 * c[5]))) / (length * length);
+  return p;
 }
 
 double Ramp::integral(double s) const {
   const double x = std::min(s / length, 1.0);
   const double ramp =
       length * x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3 + x * (c[3] / 4 + x * (c[4] / 5 + x * c[5] / 6)))));
-  return ramp + (s > length ? (s - length) * value(length) : 0);
+  return ramp + (s > length ? (s - length) * at(length).value : 0);
 }
 
 bool BenchState::is_possible(double largest_step) const {
+  const double frequency = programme.frequency;
   if (frequency == 0) return true;
   const double step = 1 / (frequency * steps_per_period);
   return frequency > 0 && steps_per_period == steps_in_period(frequency, largest_step) &&
@@ -57,7 +51,7 @@ double Bench::grid_step(double frequency, double largest_step) {
   return 1 / (frequency * steps_in_period(frequency, largest_step));
 }
 
-double Bench::grid_step() const { return 1 / (b_.frequency * b_.steps_per_period); }
+double Bench::grid_step() const { return 1 / (b_.programme.frequency * b_.steps_per_period); }
 
 double Bench::elapsed() const { return b_.node * grid_step() + b_.offset; }
 
@@ -75,43 +69,43 @@ double Bench::phase_at(double s) const {
 Phasor Bench::motion(double tau, Boundary& b) const {
   const double s = elapsed() + tau;
   const double phase = phase_at(s), sine = std::sin(phase), cosine = std::cos(phase);
-  const double X = b_.amplitude.value(s), dX = b_.amplitude.slope(s), ddX = b_.amplitude.curvature(s);
-  const double w = 2 * pi * b_.speed.value(s), dw = 2 * pi * b_.speed.slope(s);
-  b.position = X * sine;
-  b.velocity = dX * sine + X * w * cosine;
-  b.acceleration = (ddX - X * w * w) * sine + (2 * dX * w + X * dw) * cosine;
+  const Ramp::Point X = b_.amplitude.at(s), f = b_.speed.at(s);
+  const double w = 2 * pi * f.value, dw = 2 * pi * f.slope;
+  b.position = X.value * sine;
+  b.velocity = X.slope * sine + X.value * w * cosine;
+  b.acceleration = (X.curvature - X.value * w * w) * sine + (2 * X.slope * w + X.value * dw) * cosine;
   return {sine, cosine};
 }
 
-void Bench::tune(double frequency, double acceleration, double largest_step) {
-  if (frequency == b_.frequency && acceleration == b_.acceleration) return;
+void Bench::tune(const BenchParameters& programme, double largest_step) {
+  const double frequency = programme.frequency, acceleration = programme.acceleration;
+  if (frequency == b_.programme.frequency && acceleration == b_.programme.acceleration) return;
   const double target = acceleration / (4 * pi * pi * frequency * frequency);
-  double X = 0, dX = 0, ddX = 0, f = frequency, df = 0, ddf = 0, phase = 0;
-  if (b_.frequency > 0 && !(b_.acceleration == 0 && b_.node >= b_.ramp_steps)) {
+  Ramp::Point X, f{frequency};
+  double phase = 0;
+  if (b_.programme.frequency > 0 && !(b_.programme.acceleration == 0 && b_.node >= b_.ramp_steps)) {
     const double s = elapsed();
-    X = b_.amplitude.value(s), dX = b_.amplitude.slope(s), ddX = b_.amplitude.curvature(s);
-    f = b_.speed.value(s), df = b_.speed.slope(s), ddf = b_.speed.curvature(s);
+    X = b_.amplitude.at(s), f = b_.speed.at(s);
     phase = std::fmod(phase_at(s), 2 * pi);
   }
   const double carry = b_.carry;
   b_ = {};
   b_.carry = carry;
-  b_.frequency = frequency;
-  b_.acceleration = acceleration;
+  b_.programme = programme;
   b_.phase = phase;
   b_.steps_per_period = steps_in_period(frequency, largest_step);
-  const double slower = std::max(1.0, frequency / std::max(f, 1e-3 * frequency));
+  const double slower = std::max(1.0, frequency / std::max(f.value, 1e-3 * frequency));
   // Whole periods: a host that steps by periods then stays on the grid.
   b_.ramp_steps = b_.steps_per_period * std::lround(slower);
   const double length = b_.ramp_steps * grid_step();
-  b_.amplitude = Ramp::to(target, X, dX, ddX, length);
-  b_.speed = Ramp::to(frequency, f, df, ddf, length);
+  b_.amplitude = Ramp::to(target, X, length);
+  b_.speed = Ramp::to(frequency, f, length);
 }
 
 void Bench::advance(double h, bool reaches_node, Phasor begin, double force_begin, Phasor end, double force_end) {
   if (b_.node >= b_.ramp_steps) {
     // (1/pi) integral of F sin, F cos over the period.
-    const double weight = h * b_.frequency;
+    const double weight = h * b_.programme.frequency;
     b_.sin_sum += weight * (force_begin * begin.sine + force_end * end.sine);
     b_.cos_sum += weight * (force_begin * begin.cosine + force_end * end.cosine);
   }
@@ -126,7 +120,7 @@ void Bench::advance(double h, bool reaches_node, Phasor begin, double force_begi
 }
 
 void Bench::finish_period() {
-  const double X = b_.amplitude.value(b_.amplitude.length);
+  const double X = b_.amplitude.at(b_.amplitude.length).value;
   const std::complex<double> force(b_.sin_sum, b_.cos_sum), before(b_.H_re, b_.H_im);
   const std::complex<double> H = X > 0 && std::norm(force) > 0 ? -X / force : 0;
   b_.change = b_.periods > 0 && std::norm(H) > 0 ? std::abs(H - before) / std::abs(H) : 1;

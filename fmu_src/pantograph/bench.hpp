@@ -21,17 +21,19 @@ struct Ramp {
   double c[6] = {};  // coefficients in x = s / length
   double length = 0;
 
-  static Ramp to(double target, double value, double slope, double curvature, double length);
-  double value(double s) const;
-  double slope(double s) const;
-  double curvature(double s) const;
+  struct Point {
+    double value = 0, slope = 0, curvature = 0;
+  };
+  static Ramp to(double target, const Point& from, double length);
+  Point at(double s) const;
   double integral(double s) const;
 };
+ZSPRING_MEMBERS(Ramp, c, length)
 
 struct BenchState {
-  double frequency = 0, acceleration = 0;  // the programme's targets; frequency 0: none yet
-  Ramp amplitude, speed;                   // m; Hz
-  double phase = 0;                        // rad, where the ramp began
+  BenchParameters programme;  // its targets; frequency 0: none yet
+  Ramp amplitude, speed;      // m; Hz
+  double phase = 0;           // rad, where the ramp began
   Count steps_per_period = 0;
   Count ramp_steps = 0;
   Count node = 0;                   // grid steps done since the ramp began
@@ -44,21 +46,8 @@ struct BenchState {
 
   bool is_possible(double largest_step) const;
 };
-
-template <class Visitor>
-void visit(Ramp& r, Visitor&& f) {
-  for (double& c : r.c) f(c);
-  f(r.length);
-}
-
-template <class Visitor>
-void visit(BenchState& b, Visitor&& f) {
-  f(b.frequency), f(b.acceleration);
-  visit(b.amplitude, f);
-  visit(b.speed, f);
-  f(b.phase), f(b.steps_per_period), f(b.ramp_steps), f(b.node), f(b.offset), f(b.carry);
-  f(b.sin_sum), f(b.cos_sum), f(b.periods), f(b.H_re), f(b.H_im), f(b.change);
-}
+ZSPRING_MEMBERS(BenchState, programme, amplitude, speed, phase, steps_per_period, ramp_steps, node, offset, carry,
+                sin_sum, cos_sum, periods, H_re, H_im, change)
 
 // Internal steps in a period of the grid: the fewest whole number of at most `largest_step` s, 16 at least.
 Count steps_in_period(double frequency, double largest_step);
@@ -71,8 +60,8 @@ class Bench {
  public:
   explicit Bench(BenchState& state) : b_(state) {}
 
-  // Start a new programme if frequency (Hz) or acceleration (m/s2) differ from the running one.
-  void tune(double frequency, double acceleration, double largest_step);
+  // Start a new programme if it differs from the running one.
+  void tune(const BenchParameters& programme, double largest_step);
   // s, of the grid at this frequency
   static double grid_step(double frequency, double largest_step);
   double grid_step() const;                      // s

@@ -1,12 +1,23 @@
 #include "communication_step.hpp"
 
+#include <cmath>
+
 namespace zspring {
+
+Discard unsolved(double time, const Convergence& end) {
+  if (!std::isfinite(end.residual))
+    return {time,
+            text("no solution even after halving the internal step to 1/1024: the spring would have no length, or the "
+                 "values overflow")};
+  return {time,
+          text("no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, iterations: %d",
+               dof_name[end.dof], end.residual, end.dof == ALPHA || end.dof == BETA ? "N.m" : "N", end.iterations)};
+}
 
 // A force takes HHT's memory of the acceleration with it; else the first step would still feel the old force, an
 // error of first order. An imposed velocity costs the work of an impulse.
 void meet(const Hht& hht, const Boundary& b0, MechanicalState& s) {
-  if (hht.head_imposed())
-    s.work += 0.5 * hht.mechanics().mass[U1] * (b0.velocity * b0.velocity - s.v[U1] * s.v[U1]);
+  if (hht.head_imposed()) s.work += 0.5 * hht.mechanics().mass[U1] * (b0.velocity * b0.velocity - s.v[U1] * s.v[U1]);
   meet_variation(hht, b0, s);
 }
 
@@ -29,13 +40,13 @@ const Signal& position_input(Drive drive, const Inputs& u) {
   return drive == Drive::Wire ? u.wire_height : u.head_displacement;
 }
 
-double CommunicationStep::largest_internal_step() const {
-  return p_.drive == Drive::Bench ? Bench::grid_step(held_.bench_frequency, p_.solver.step) : p_.solver.step;
+void set_forces(const Inputs& u, double tau, Boundary& b) {
+  b.uplift = {u.uplift.head.at(tau), u.uplift.upper_frame.at(tau), u.uplift.lower_frame.at(tau)};
+  b.contact_force = u.contact_force.at(tau);
 }
 
-void CommunicationStep::set_forces(double tau, Boundary& b) const {
-  for (int k = 0; k < 3; ++k) b.uplift[k] = held_.inputs.uplift[k].at(tau);
-  b.contact_force = held_.inputs.contact_force.at(tau);
+double largest_internal_step(const Parameters& p, const Held& held) {
+  return p.drive == Drive::Bench ? Bench::grid_step(held.bench.frequency, p.solver.step) : p.solver.step;
 }
 
 }  // namespace zspring

@@ -15,32 +15,18 @@ struct SimulationState {
   MotionState motion;  // Drive::Displacement: the head; Drive::Wire: the wire
   BenchState bench;
 };
-
-template <class Visitor>
-void visit(SimulationState& s, Visitor&& f) {
-  visit(s.mechanical, f);
-  visit(s.motion, f);
-  visit(s.bench, f);
-}
+ZSPRING_MEMBERS(SimulationState, mechanical, motion, bench)
 
 // What holds during one communication step.
 struct Held {
   Inputs inputs;
-  double bench_frequency = 0, bench_acceleration = 0;
+  BenchParameters bench;
   double length = 0;  // s; 0 before the first step
 };
+ZSPRING_MEMBERS(Held, inputs, bench, length)
 
-template <class Visitor>
-void visit(Held& h, Visitor&& f) {
-  visit(h.inputs, f);
-  f(h.bench_frequency), f(h.bench_acceleration), f(h.length);
-}
-
-// An internal step that Newton did not solve, however short.
-struct Unsolved {
-  double time;  // s since the begin of the communication step
-  Convergence end;
-};
+// An internal step, `time` s since the begin of the communication step, that Newton did not solve, however short.
+Discard unsolved(double time, const Convergence& end);
 
 // What jumps at a communication point where the surroundings become `b0`: the state, or the linear part of it for
 // variations of both.
@@ -48,53 +34,49 @@ void meet(const Hht& hht, const Boundary& b0, MechanicalState& s);
 void meet_variation(const Hht& hht, const Boundary& db0, MechanicalState& d);
 
 const Signal& position_input(Drive drive, const Inputs& u);
+void set_forces(const Inputs& u, double tau, Boundary& b);
+double largest_internal_step(const Parameters& p, const Held& held);  // s
 
 class CommunicationStep {
  public:
   CommunicationStep(const Hht& hht, const Held& held) : hht_(hht), p_(hht.mechanics().parameters), held_(held) {}
 
-  double largest_internal_step() const;  // s
-  // Leads `state` through it; on_step(from, to, b0, b1, h) sees each internal step that was made.
+  // Leads `state` through it; on_step(from, to) sees each internal step that was made.
   template <class OnStep>
-  std::optional<Unsolved> run(SimulationState& state, OnStep&& on_step) const {
+  std::optional<Discard> run(SimulationState& state, OnStep&& on_step) const {
     return p_.drive == Drive::Bench ? run_bench(state, on_step) : run_inputs(state, on_step);
   }
 
  private:
   static constexpr int most_halvings = 10;  // to 1/1024 of the internal step
 
-  void set_forces(double tau, Boundary& b) const;
-
   template <class OnStep>
-  std::optional<Unsolved> run_bench(SimulationState& state, OnStep& on_step) const {
+  std::optional<Discard> run_bench(SimulationState& state, OnStep& on_step) const {
     MechanicalState& s = state.mechanical;
     Bench bench(state.bench);
-    bench.tune(held_.bench_frequency, held_.bench_acceleration, p_.solver.step);
+    bench.tune(held_.bench, p_.solver.step);
     const double rounding = rounding_of_time * bench.grid_step();
     const double end_time = held_.length + state.bench.carry;
-    double done = 0;  // s since the begin of the communication step, at a node or a cut
-    double next_node =
-        bench.to_next_node();  // s likewise; counted from the first, so that rounding does not add up
+    double done = 0;                          // s since the begin of the communication step, at a node or a cut
+    double next_node = bench.to_next_node();  // s likewise; counted from the first, so that rounding does not add up
     const double first_node = next_node;
     Count nodes = 0;
 
-    Boundary b0, b1;
     const auto boundary = [&](double tau, Boundary& b) {
-      set_forces(tau, b);
-      bench.motion(tau - done, b);
+      set_forces(held_.inputs, tau, b);
+      return bench.motion(tau - done, b);
     };
-    set_forces(0, b0);
-    Phasor begin = bench.motion(0, b0);
-    meet(hht_, b0, s);
+    Boundary b;
+    Phasor begin = boundary(0, b);
+    meet(hht_, b, s);
     while (end_time - done > rounding) {
       const bool reaches_node = end_time >= next_node - rounding;
       const double h = reaches_node ? bench.to_next_node() : end_time - done;
-      set_forces(done + h, b1);
-      const Phasor end = bench.motion(h, b1);
+      set_forces(held_.inputs, done + h, b);
+      const Phasor end = bench.motion(h, b);
       const double force = s.contact_force - p_.static_force;
-      if (const auto unsolved = cover(s, boundary, b0, b1, done, h, 0, on_step)) return unsolved;
+      if (std::optional<Discard> discard = cover(s, boundary, b, done, h, 0, on_step)) return discard;
       bench.advance(h, reaches_node, begin, force, end, s.contact_force - p_.static_force);
-      b0 = b1;
       begin = end;
       done = reaches_node ? next_node : end_time;
       if (reaches_node) next_node = first_node + ++nodes * bench.grid_step();
@@ -104,52 +86,51 @@ class CommunicationStep {
   }
 
   template <class OnStep>
-  std::optional<Unsolved> run_inputs(SimulationState& state, OnStep& on_step) const {
+  std::optional<Discard> run_inputs(SimulationState& state, OnStep& on_step) const {
     const double H = held_.length;
     MechanicalState& s = state.mechanical;
     const ImposedMotion motion(state.motion, position_input(p_.drive, held_.inputs), H);
-    Boundary b0, b1;
     const auto boundary = [&](double tau, Boundary& b) {
-      set_forces(tau, b);
+      set_forces(held_.inputs, tau, b);
       if (p_.drive != Drive::Force) motion.at(tau, b);
     };
     const Count n = internal_steps(H, p_.solver.step);
     const double steps = static_cast<double>(n);
-    boundary(0, b0);
-    meet(hht_, b0, s);
+    Boundary b;
+    boundary(0, b);
+    meet(hht_, b, s);
     for (Count i = 0; i < n; ++i) {
-      boundary((i + 1) / steps * H, b1);
-      if (const auto unsolved = cover(s, boundary, b0, b1, i / steps * H, H / steps, 0, on_step)) return unsolved;
-      b0 = b1;
+      boundary((i + 1) / steps * H, b);
+      if (std::optional<Discard> discard = cover(s, boundary, b, i / steps * H, H / steps, 0, on_step)) return discard;
     }
     if (p_.drive != Drive::Force) state.motion = motion.end();
     return std::nullopt;
   }
 
-  // One internal step, halved as often as it takes.
+  // One internal step of h s to the boundary `b`, halved as often as it takes.
   template <class BoundaryAt, class OnStep>
-  std::optional<Unsolved> cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b0,
-                                const Boundary& b1, double begin, double h, int halvings, OnStep& on_step) const {
+  std::optional<Discard> cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b, double begin,
+                               double h, int halvings, OnStep& on_step) const {
     MechanicalState next;
     const double h_last = s.h, hht_alpha = p_.solver.hht_alpha;
     move_memory(hht_alpha, h_last, h, s.a_slope, s.a);
-    const Convergence end = hht_.step(s, b0, b1, h, next);
+    const Convergence end = hht_.step(s, b, h, next);
     s.statistics.add_attempt(end.iterations);
     if (end.reached) {
       next.statistics = s.statistics;
       next.statistics.steps += 1;
-      on_step(s, next, b0, b1, h);
+      on_step(s, next);
       s = next;
       return std::nullopt;
     }
-    if (halvings == most_halvings) return Unsolved{begin, end};
+    if (halvings == most_halvings) return unsolved(begin, end);
     move_memory(hht_alpha, h, h_last, s.a_slope, s.a);
     s.statistics.refinements += 1;
     Boundary middle;
     boundary(begin + 0.5 * h, middle);
-    if (const auto unsolved = cover(s, boundary, b0, middle, begin, 0.5 * h, halvings + 1, on_step))
-      return unsolved;
-    return cover(s, boundary, middle, b1, begin + 0.5 * h, 0.5 * h, halvings + 1, on_step);
+    if (std::optional<Discard> discard = cover(s, boundary, middle, begin, 0.5 * h, halvings + 1, on_step))
+      return discard;
+    return cover(s, boundary, b, begin + 0.5 * h, 0.5 * h, halvings + 1, on_step);
   }
 
   const Hht& hht_;

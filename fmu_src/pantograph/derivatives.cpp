@@ -1,7 +1,6 @@
 // Derivatives of the outputs, with respect to time and to the inputs: the last communication step is done again,
 // and what is wanted taken from each internal step.
 #include "simulation.hpp"
-#include "step_derivative.hpp"
 
 namespace zspring {
 
@@ -10,14 +9,14 @@ Outputs Simulation::output_rates() {
   MechanicalState d;
   if (held_.length > 0) {
     SimulationState again = before_;
-    const auto quotient = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0,
-                              const Boundary& b1, double h) {
-      d.internal = (to.internal - from.internal) / h;
-      d.s = (to.s - from.s) / h;
-      d.contact_force = (to.contact_force - from.contact_force) / h;
-      d.boundary.uplift = (b1.uplift - b0.uplift) / h;
-      d.boundary.acceleration = (b1.acceleration - b0.acceleration) / h;
-      d.boundary.acceleration_change = (b1.acceleration_change - b0.acceleration_change) / h;
+    const auto quotient = [&](const MechanicalState& from, const MechanicalState& to) {
+      const Boundary &b0 = from.boundary, &b1 = to.boundary;
+      d.internal = (to.internal - from.internal) / to.h;
+      d.s = (to.s - from.s) / to.h;
+      d.contact_force = (to.contact_force - from.contact_force) / to.h;
+      d.boundary.uplift = (b1.uplift - b0.uplift) / to.h;
+      d.boundary.acceleration = (b1.acceleration - b0.acceleration) / to.h;
+      d.boundary.acceleration_change = (b1.acceleration_change - b0.acceleration_change) / to.h;
     };
     CommunicationStep(hht_, held_).run(again, quotient);
   }
@@ -25,7 +24,7 @@ Outputs Simulation::output_rates() {
   d.v = acceleration(hht_, s);
   d.dissipated = s.loss_power;
   d.work = s.v.dot(mechanics_.preload + hht_.push(s.boundary, s.contact_force));
-  return zspring::outputs_change(view(), d);
+  return change(d);
 }
 
 Outputs Simulation::outputs_change(const Inputs& direction) {
@@ -35,9 +34,9 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     MechanicalState d;
     d.boundary = initial_boundary(direction);
     if (p.drive == Drive::Force) d.contact_force = d.boundary.contact_force;
-    if (p.drive == Drive::Wire) d.contact_force = s.contact_force > 0 ? -p.contact_k * d.boundary.position : 0;
+    if (p.drive == Drive::Wire) d.contact_force = s.contact_force > 0 ? -p.contact.k * d.boundary.position : 0;
     if (hht_.head_imposed()) d.contact_force = d.boundary.uplift[0];
-    return zspring::outputs_change(view(), d);
+    return change(d);
   }
   // Only values vary; the way a position moves does not.
   Inputs du = direction;
@@ -50,13 +49,12 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
 
   const auto boundary_change = [&](double tau) {
     Boundary b;
-    for (int k = 0; k < 3; ++k) b.uplift[k] = du.uplift[k].value;
-    b.contact_force = du.contact_force.value;
+    set_forces(du, tau, b);
     if (moves) motion.at(tau, b);
     return b;
   };
   MechanicalState d;
-  Boundary db0 = boundary_change(0);
+  const Boundary db0 = boundary_change(0);
   meet_variation(hht_, db0, d);
   if (p.drive == Drive::Displacement) {
     Boundary b0;
@@ -64,17 +62,14 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     d.work = mechanics_.mass[U1] * b0.velocity * db0.velocity;
   }
   double tau = 0;
-  const auto differentiated = [&](const MechanicalState& from, const MechanicalState& to, const Boundary& b0,
-                                  const Boundary& b1, double h) {
-    tau += h;
-    move_memory(p.solver.hht_alpha, from.h, h, d.a_slope, d.a);
-    const Boundary db1 = boundary_change(tau);
-    d = step_derivative(hht_, from, b0, b1, h, to, d, db0, db1);
-    db0 = db1;
+  const auto differentiated = [&](const MechanicalState& from, const MechanicalState& to) {
+    tau += to.h;
+    move_memory(p.solver.hht_alpha, from.h, to.h, d.a_slope, d.a);
+    d = hht_.step_variation(from, to, d, boundary_change(tau));
   };
   SimulationState again = before_;
   CommunicationStep(hht_, held_).run(again, differentiated);
-  return zspring::outputs_change(view(), d);
+  return change(d);
 }
 
 }  // namespace zspring

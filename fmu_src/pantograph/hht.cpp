@@ -50,7 +50,7 @@ StepCoefficients::StepCoefficients(const Mechanics& m, double step)
 Contact Hht::contact(const Boundary& b, double u, double v) const {
   const Parameters& p = m_.parameters;
   if (p.drive == Drive::Force) return {b.contact_force, true};
-  const double force = p.static_force + p.contact_k * (u - b.position) + p.contact_c * (v - b.velocity);
+  const double force = p.static_force + p.contact.k * (u - b.position) + p.contact.c * (v - b.velocity);
   return force > 0 ? Contact{force, true} : Contact{0, false};
 }
 
@@ -108,13 +108,12 @@ bool Hht::solve(const StepCoefficients& c, const Trial& t, Vector5& r) const {
   A.col(2) = c.weight * t.angle_slope[1] * t.head_tangent.col(2);
   A.col(3) = bw * t.head_tangent.col(3);
   for (int j = 0; j < 2; ++j)
-    A(j + 1, j + 1) +=
-        m_.mass[j + 1] * t.acceleration_slope[j] + c.weight * m_.moment_bound[j] * t.moment_slope[j];
+    A(j + 1, j + 1) += m_.mass[j + 1] * t.acceleration_slope[j] + c.weight * m_.moment_bound[j] * t.moment_slope[j];
   A(0, 0) += m_.mass[U1] + gw * p.c1;
   A(0, 3) -= gw * p.c1;
   A(3, 0) -= gw * p.c1;
   A(3, 3) += m_.mass[U2] + gw * (p.c1 + p.c2) + bw * p.k2;
-  if (p.drive == Drive::Wire && t.contact.closed) A(0, 0) += gw * p.contact_c + bw * p.contact_k;
+  if (p.drive == Drive::Wire && t.contact.closed) A(0, 0) += gw * p.contact.c + bw * p.contact.k;
 
   // The lower frame couples to the upper one only.
   const double coupling = -(gw * p.c2 + bw * p.k2);
@@ -144,15 +143,8 @@ Vector5 Hht::push(const Boundary& b, double contact_force) const {
   return f;
 }
 
-Vector5 Hht::old_load(const MechanicalState& from, const Boundary& b0) const {
-  Vector5 R = from.internal - on_masses(b0.uplift);
-  if (!head_imposed()) R[U1] += contact(b0, from.q[U1], from.v[U1]).force;
-  return R;
-}
-
-// The size of the forces that a step balances, N and N m. An imposed head balances none: where the position jumps,
-// its reaction may be far larger than all others. The last term lifts the tolerance above rounding for very stiff
-// springs.
+// The size of the forces that a step balances, N and N m. An imposed head balances none: where the position jumps, its
+// reaction may be far larger than all others. The last term lifts the tolerance above rounding for very stiff springs.
 Vector5 Hht::residual_scale(const MechanicalState& from) const {
   const ZSpringParameters& z = m_.parameters.zspring;
   Vector5 inertia = m_.mass.cwiseProduct(from.a);
@@ -164,12 +156,12 @@ Vector5 Hht::residual_scale(const MechanicalState& from) const {
   return scale;
 }
 
-Convergence Hht::step(const MechanicalState& from, const Boundary& b0, const Boundary& b1, double h,
-                      MechanicalState& to) const {
+Convergence Hht::step(const MechanicalState& from, const Boundary& b1, double h, MechanicalState& to) const {
   const StepCoefficients c(m_, h);
   const SolverParameters& solver = m_.parameters.solver;
   const bool direct = m_.law == FrictionLaw::Tanh && solver.tangent != Tangent::Resolvent;
-  const Vector5 R0 = old_load(from, b0);
+  Vector5 R0 = from.internal - on_masses(from.boundary.uplift);
+  if (!head_imposed()) R0[U1] += contact(from.boundary, from.q[U1], from.v[U1]).force;
   const Vector5 uplift = on_masses(b1.uplift);
   const Vector5 allowed = solver.tolerance * residual_scale(from);
 
@@ -198,12 +190,12 @@ Convergence Hht::step(const MechanicalState& from, const Boundary& b0, const Bou
     joints(change) = t.angle_slope.cwiseProduct(joints(r));
     small_change = change.norm() <= solver.tolerance * (1 + t.q.norm());
   }
-  if (end.reached) accept(c, from, b0, b1, t, to);
+  if (end.reached) accept(c, from, b1, t, to);
   return end;
 }
 
-void Hht::accept(const StepCoefficients& c, const MechanicalState& from, const Boundary& b0, const Boundary& b1,
-                 const Trial& t, MechanicalState& to) const {
+void Hht::accept(const StepCoefficients& c, const MechanicalState& from, const Boundary& b1, const Trial& t,
+                 MechanicalState& to) const {
   to.q = t.q;
   to.v = t.v;
   to.a = t.a;
@@ -220,7 +212,7 @@ void Hht::accept(const StepCoefficients& c, const MechanicalState& from, const B
   to.loss_power = m_.damping_power(t.v);
   to.loss_power += m_.moment_bound.cwiseProduct(t.s).dot(joints(t.v));
   to.dissipated = from.dissipated + 0.5 * c.h * (from.loss_power + to.loss_power);
-  const Vector5 mean_push = m_.preload + 0.5 * (push(b0, from.contact_force) + push(b1, to.contact_force));
+  const Vector5 mean_push = m_.preload + 0.5 * (push(from.boundary, from.contact_force) + push(b1, to.contact_force));
   to.work = from.work + mean_push.dot(to.q - from.q);
 }
 

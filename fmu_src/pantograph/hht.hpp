@@ -50,12 +50,17 @@ class Hht {
  public:
   explicit Hht(const Mechanics& mechanics) : m_(mechanics) {}
 
-  // From `from`, its memory moved to steps of h s, under the boundary `b0` to `to` under `b1`. Where Newton does
-  // not converge `to` is without meaning; its statistics never have one.
-  Convergence step(const MechanicalState& from, const Boundary& b0, const Boundary& b1, double h,
-                   MechanicalState& to) const;
+  // From `from`, its memory moved to steps of h s, to `to` under the boundary `b1`. Where Newton does not converge
+  // `to` is without meaning; its statistics never have one.
+  Convergence step(const MechanicalState& from, const Boundary& b1, double h, MechanicalState& to) const;
 
-  // The parts that the linearised step shares. `direct`: the unknown of a joint is its acceleration, not z.
+  // step_variation.cpp. How the result `to` of the step from `from` varies with that and with the surroundings;
+  // variations are held in the same structures as what varies. The memory of `from` and `dfrom` is moved to steps of
+  // to.h s. By the implicit function theorem on the converged step, so exact where the friction law has a slope and
+  // one-sided at the points where stick turns into slip.
+  MechanicalState step_variation(const MechanicalState& from, const MechanicalState& to, const MechanicalState& dfrom,
+                                 const Boundary& db1) const;
+
   bool head_imposed() const {
     return m_.parameters.drive == Drive::Displacement || m_.parameters.drive == Drive::Bench;
   }
@@ -65,18 +70,18 @@ class Hht {
   double reaction(const Boundary& b, const Vector5& internal) const;
   // What does work on the pantograph at one instant, N, without the preload and so linear.
   Vector5 push(const Boundary& b, double contact_force) const;
-  // From t.x all the rest of t; false where the spring has no direction.
+  const Mechanics& mechanics() const { return m_; }
+
+ private:
+  // From t.x all the rest of t; false where the spring has no direction. `direct`: the unknown of a joint is its
+  // acceleration, not z.
   bool evaluate(const StepCoefficients& c, const MechanicalState& from, const Boundary& b1, bool direct,
                 Trial& t) const;
   // residual -> J^-1 residual; false where J is not positive definite
   bool solve(const StepCoefficients& c, const Trial& t, Vector5& residual) const;
-  const Mechanics& mechanics() const { return m_; }
-
- private:
-  Vector5 old_load(const MechanicalState& from, const Boundary& b0) const;
   Vector5 residual_scale(const MechanicalState& from) const;
-  void accept(const StepCoefficients& c, const MechanicalState& from, const Boundary& b0, const Boundary& b1,
-              const Trial& t, MechanicalState& to) const;
+  void accept(const StepCoefficients& c, const MechanicalState& from, const Boundary& b1, const Trial& t,
+              MechanicalState& to) const;
 
   const Mechanics& m_;
 };

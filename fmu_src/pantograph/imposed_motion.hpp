@@ -26,13 +26,7 @@ struct MotionState {
 
   MotionState variation() const;  // of a motion that does not vary
 };
-
-template <class Visitor>
-void visit(MotionState& m, Visitor&& f) {
-  f(m.position), f(m.velocity), f(m.acceleration);
-  visit(m.positions, f);
-  visit(m.curvatures, f);
-}
+ZSPRING_MEMBERS(MotionState, position, velocity, acceleration, positions, curvatures)
 
 // The motion over one communication step of `length` s. Linear in the start's motion and the input's values, so
 // that it also serves as its own derivative: give it variations and it returns the variation.

@@ -49,7 +49,7 @@ Mechanics::Mechanics(const Parameters& p) : parameters(p), law(friction_law(p)) 
     return;
   }
   static_ = zspring_static_state(p.zspring, load);
-  stiffness = {static_.theta, static_.k_locked, static_.k_free};
+  calculated.zspring = {static_.theta, static_.k_locked, static_.k_free};
   rest[ALPHA] = rest[BETA] = static_.theta;
   const auto at_rest = zspring_response(p.zspring, static_.theta, static_.theta, static_.gap);
   if (!at_rest)

@@ -54,7 +54,7 @@ class Mechanics {
   double strain_energy(const Vector5& q, const ElementResponse& head) const;
 
   const Parameters& parameters;
-  StaticStiffness stiffness;
+  Calculated calculated;
   FrictionLaw law;
   Vector2 moment_bound;  // N m, scale of s = moment / bound; 1 where the law knows no bound
   Vector5 mass;

@@ -1,4 +1,4 @@
-#include "outputs.hpp"
+#include "simulation.hpp"
 
 namespace zspring {
 namespace {
@@ -58,9 +58,9 @@ DISCRETE(bench_dot_H_re, x.bench.H_re)
 DISCRETE(bench_dot_H_im, x.bench.H_im)
 DISCRETE(bench_dot_change, x.bench.change)
 DISCRETE(bench_dot_periods, x.bench.periods)
-DISCRETE(bench_dot_steps_per_period, steps_in_period(x.m.parameters.bench_frequency, x.m.parameters.solver.step))
+DISCRETE(bench_dot_steps_per_period, steps_in_period(x.m.parameters.bench.frequency, x.m.parameters.solver.step))
 
-Outputs outputs(const View& x) { return output_values(x); }
-Outputs outputs_change(const View& x, const MechanicalState& d) { return output_changes(x, d); }
+Outputs Simulation::present_outputs() const { return output_values(view()); }
+Outputs Simulation::change(const MechanicalState& d) const { return output_changes(view(), d); }
 
 }  // namespace zspring

@@ -23,10 +23,6 @@ struct View {
   ElementResponse head;  // there is one: the spring of an accepted state has a direction
 };
 
-Outputs outputs(const View& x);
-// With the variation `d` of the state.
-Outputs outputs_change(const View& x, const MechanicalState& d);
-
 // The true accelerations at this instant, from the balance of forces; HHT's where a mass is 0, m/s2 and rad/s2.
 Vector5 acceleration(const Hht& hht, const MechanicalState& state);
 

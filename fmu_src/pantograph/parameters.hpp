@@ -24,6 +24,16 @@ struct ZSpringParameters {
   double tau;     // s, regularisation Mf tanh(tau w), > 0
 };
 
+struct ContactParameters {
+  double k, c;  // N/m, N s/m
+};
+
+struct BenchParameters {
+  double frequency = 0;     // Hz, > 0
+  double acceleration = 0;  // m/s2, peak
+};
+ZSPRING_MEMBERS(BenchParameters, frequency, acceleration)
+
 struct SolverParameters {
   double step;       // s, largest internal step
   double hht_alpha;  // [-1/3, 0]
@@ -32,6 +42,7 @@ struct SolverParameters {
   int max_iterations;
 };
 
+// Named and nested as the variables of the model description are, and in their order: so they find each other.
 struct Parameters {
   Drive drive;
   Suspension suspension;
@@ -42,33 +53,31 @@ struct Parameters {
   ZSpringParameters zspring;
   double static_force;        // N
   double gravity;             // m/s2
-  double contact_k;           // N/m, Drive::Wire
-  double contact_c;           // N s/m, Drive::Wire
-  double bench_frequency;     // Hz, Drive::Bench
-  double bench_acceleration;  // m/s2, peak
+  ContactParameters contact;  // Drive::Wire
+  BenchParameters bench;      // Drive::Bench; may change between steps
   SolverParameters solver;
 };
+
+struct Uplift {
+  Signal head, upper_frame, lower_frame;  // N
+};
+ZSPRING_MEMBERS(Uplift, head, upper_frame, lower_frame)
 
 struct Inputs {
   Signal contact_force;      // N, Drive::Force
   Signal head_displacement;  // m, Drive::Displacement
   Signal wire_height;        // m, Drive::Wire
-  Signal uplift[3];          // N, on head, upper frame, lower frame
+  Uplift uplift;
 };
-
-template <class Visitor>
-void visit(Inputs& u, Visitor&& f) {
-  visit(u.contact_force, f);
-  visit(u.head_displacement, f);
-  visit(u.wire_height, f);
-  for (Signal& s : u.uplift) visit(s, f);
-}
+ZSPRING_MEMBERS(Inputs, contact_force, head_displacement, wire_height, uplift)
 
 // The calculated parameters; all 0 with Suspension::Linear.
-struct StaticStiffness {
-  double theta = 0;     // rad
-  double k_locked = 0;  // N/m
-  double k_free = 0;    // N/m
+struct Calculated {
+  struct {
+    double theta = 0;     // rad
+    double k_locked = 0;  // N/m
+    double k_free = 0;    // N/m
+  } zspring;
 };
 
 }  // namespace zspring

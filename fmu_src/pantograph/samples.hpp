@@ -10,9 +10,9 @@ namespace zspring {
 struct Samples {
   static constexpr int most = 5;
   Count count = 0;
+  double last_length = 0;   // s, of the last append
   double age[most] = {};    // s before the newest sample, ascending, age[0] = 0
   double value[most] = {};  // SI
-  double last_length = 0;   // s, of the last append
 
   // `length` s after the last one. Samples of very different distances are no help to each other: one that comes
   // late begins anew with its neighbour, a single one that comes early replaces its neighbour.
@@ -32,13 +32,7 @@ struct Samples {
 
   bool is_possible() const { return count <= most; }
 };
-
-template <class Visitor>
-void visit(Samples& s, Visitor&& f) {
-  f(s.count), f(s.last_length);
-  for (double& x : s.age) f(x);
-  for (double& x : s.value) f(x);
-}
+ZSPRING_MEMBERS(Samples, count, last_length, age, value)
 
 // Newton's divided differences of the samples, newest first; linear in the values.
 class Interpolant {

@@ -1,22 +1,17 @@
 #include "simulation.hpp"
 
-#include <cmath>
-
 namespace zspring {
 
-Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
-    : mechanics_(parameters), hht_(mechanics_) {
-  state_.mechanical = at_rest(inputs);
-  state_.motion.position = state_.mechanical.boundary.position;
-  before_ = state_;
-  held_.inputs = inputs;
-  if (!is_finite()) refuse(overflow);
+Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : mechanics_(parameters), hht_(mechanics_) {
+  SimulationState state;
+  state.mechanical = at_rest(inputs);
+  state.motion.position = state.mechanical.boundary.position;
+  begin(state, {inputs, {}, 0});
 }
 
 Boundary Simulation::initial_boundary(const Inputs& u) const {
   Boundary b;
-  for (int k = 0; k < 3; ++k) b.uplift[k] = u.uplift[k].value;
-  b.contact_force = u.contact_force.value;
+  set_forces(u, 0, b);
   // The wire begins where it is; the head begins in the static state, whatever its target.
   if (mechanics_.parameters.drive == Drive::Wire) b.position = u.wire_height.value;
   return b;
@@ -27,55 +22,23 @@ MechanicalState Simulation::at_rest(const Inputs& inputs) const {
   s.q = mechanics_.rest;
   if (const auto head = mechanics_.head_response(s.q)) s.internal = mechanics_.spring_force(s.q, *head);
   s.boundary = initial_boundary(inputs);
-  s.contact_force =
-      hht_.head_imposed() ? hht_.reaction(s.boundary, s.internal) : hht_.contact(s.boundary, 0, 0).force;
+  s.contact_force = hht_.head_imposed() ? hht_.reaction(s.boundary, s.internal) : hht_.contact(s.boundary, 0, 0).force;
   s.a = acceleration(hht_, s);
   return s;
 }
 
-std::optional<Discard> Simulation::advance(const Inputs& inputs, double length) {
-  const Parameters& p = mechanics_.parameters;
-  const Held held{inputs, p.bench_frequency, p.bench_acceleration, length};
-  const CommunicationStep step(hht_, held);
-  if (const std::optional<Discard> discard = too_long(length, step.largest_internal_step())) return discard;
-  const SimulationState begin = state_;
-  const auto nothing = [](const MechanicalState&, const MechanicalState&, const Boundary&, const Boundary&,
-                          double) {};
-  const std::optional<Unsolved> unsolved = step.run(state_, nothing);
-  forget_outputs();
-  if (!unsolved && is_finite()) {
-    before_ = begin;
-    held_ = held;
-    return std::nullopt;
-  }
-  state_ = begin;
-  forget_outputs();
-  if (!unsolved) return Discard{0, text("%s", overflow)};
-  const Convergence& end = unsolved->end;
-  if (!std::isfinite(end.residual))
-    return Discard{unsolved->time,
-                   text("no solution even after halving the internal step to 1/1024: the spring would have no "
-                        "length, or the values overflow")};
-  return Discard{
-      unsolved->time,
-      text("no solution even after halving the internal step to 1/1024; %s: unbalanced by %.3g %s, "
-           "iterations: %d",
-           dof_name[end.dof], end.residual, end.dof == ALPHA || end.dof == BETA ? "N.m" : "N", end.iterations)};
-}
-
-// The accelerations of HHT are its own; no output shows them.
-bool Simulation::is_finite() {
+std::optional<Discard> Simulation::run(const Held& held) {
+  const auto nothing = [](const MechanicalState&, const MechanicalState&) {};
+  std::optional<Discard> discard = CommunicationStep(hht_, held).run(state_, nothing);
+  // The accelerations of HHT are its own; no output shows them.
   const MechanicalState& s = state_.mechanical;
-  return all_finite(outputs()) && s.a.allFinite() && s.a_slope.allFinite();
+  if (!discard && !(s.a.allFinite() && s.a_slope.allFinite())) discard = Discard{held.length, text("%s", overflow)};
+  return discard;
 }
 
-bool Simulation::is_possible() const {
-  for (const SimulationState* s : {&state_, &before_})
-    if (!(s->mechanical.h >= 0 && s->motion.positions.is_possible() && s->motion.curvatures.is_possible() &&
-          s->bench.is_possible(mechanics_.parameters.solver.step)))
-      return false;
-  return held_.length == 0 ||
-         (held_.length > 0 && !too_long(held_.length, CommunicationStep(hht_, held_).largest_internal_step()));
+bool Simulation::is_possible(const SimulationState& s) const {
+  return s.mechanical.h >= 0 && s.motion.positions.is_possible() && s.motion.curvatures.is_possible() &&
+         s.bench.is_possible(mechanics_.parameters.solver.step);
 }
 
 Text Simulation::describe_run() const {
@@ -101,15 +64,14 @@ std::optional<Text> Simulation::describe_imbalance() const {
       {"contact_force", "N", p.drive == Drive::Force, u.contact_force.value, p.static_force},
       {"head_displacement", "m", p.drive == Drive::Displacement, u.head_displacement.value, 0},
       {"wire_height", "m", p.drive == Drive::Wire, u.wire_height.value, 0},
-      {"uplift.head", "N", !hht_.head_imposed(), u.uplift[0].value, 0},
-      {"uplift.upper_frame", "N", true, u.uplift[1].value, 0},
-      {"uplift.lower_frame", "N", true, u.uplift[2].value, 0},
+      {"uplift.head", "N", !hht_.head_imposed(), u.uplift.head.value, 0},
+      {"uplift.upper_frame", "N", true, u.uplift.upper_frame.value, 0},
+      {"uplift.lower_frame", "N", true, u.uplift.lower_frame.value, 0},
   };
   for (const auto& i : inputs)
     if (i.acts && i.value != i.balanced)
-      return text(
-          "%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
-          i.name, i.value, i.unit, i.balanced, i.unit);
+      return text("%s = %g %s: the static state, where the simulation starts, has %g %s; the motion starts with a step",
+                  i.name, i.value, i.unit, i.balanced, i.unit);
   return std::nullopt;
 }
 

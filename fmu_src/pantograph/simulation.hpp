@@ -7,12 +7,10 @@
 
 namespace zspring {
 
-class Simulation final : public Model<Parameters, Inputs> {
+class Simulation final : public Model<Inputs, SimulationState, Held> {
  public:
   // Starts at rest in the static state under the inputs' values.
   Simulation(const Parameters& parameters, const Inputs& inputs);
-
-  std::optional<Discard> advance(const Inputs& inputs, double length) override;
 
   // derivatives.cpp. Of what has no rate in the state (forces and friction moments that are reactions) difference
   // quotients over the last internal step.
@@ -24,30 +22,26 @@ class Simulation final : public Model<Parameters, Inputs> {
   Text describe_run() const override;
   std::optional<Text> describe_step() const override;
 
-  void write(Writer& writer) override { visit_state(writer); }
-
-  const StaticStiffness& calculated() const { return mechanics_.stiffness; }
+  const Calculated& calculated() const { return mechanics_.calculated; }
   const Statistics& statistics() const { return state_.mechanical.statistics; }
 
  private:
+  Held hold(const Inputs& inputs, double length) const override {
+    return {inputs, mechanics_.parameters.bench, length};
+  }
+  double largest_internal_step(const Held& held) const override {
+    return zspring::largest_internal_step(mechanics_.parameters, held);
+  }
+  std::optional<Discard> run(const Held& held) override;
   View view() const { return {hht_, state_.mechanical, state_.bench}; }
-  Outputs present_outputs() const override { return zspring::outputs(view()); }
-  bool is_finite();
-  void read(Reader& reader) override { visit_state(reader); }
-  bool is_possible() const override;
+  Outputs present_outputs() const override;
+  Outputs change(const MechanicalState& d) const;  // of the outputs, with that of the state
+  bool is_possible(const SimulationState& s) const override;
   MechanicalState at_rest(const Inputs& inputs) const;
   Boundary initial_boundary(const Inputs& inputs) const;
-  template <class Visitor>
-  void visit_state(Visitor& f) {
-    visit(state_, f);
-    visit(before_, f);
-    visit(held_, f);
-  }
 
   Mechanics mechanics_;
   Hht hht_;
-  SimulationState state_, before_;  // before_: at the begin of the last communication step
-  Held held_;                       // in the last communication step
 };
 
 }  // namespace zspring

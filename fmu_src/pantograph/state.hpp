@@ -17,6 +17,7 @@ struct Boundary {
   // with the reaction; the motion itself is the one that was told.
   double acceleration_change = 0;
 };
+ZSPRING_MEMBERS(Boundary, uplift, contact_force, position, velocity, acceleration, acceleration_change)
 
 struct MechanicalState {
   Vector5 q = Vector5::Zero();
@@ -33,18 +34,7 @@ struct MechanicalState {
   Boundary boundary;                   // at this instant, as the last step saw it
   Statistics statistics;
 };
-
-template <class Visitor>
-void visit(Boundary& b, Visitor&& f) {
-  f(b.uplift), f(b.contact_force), f(b.position), f(b.velocity), f(b.acceleration), f(b.acceleration_change);
-}
-
-template <class Visitor>
-void visit(MechanicalState& s, Visitor&& f) {
-  f(s.q), f(s.v), f(s.a), f(s.a_slope), f(s.h), f(s.internal), f(s.s), f(s.contact_force), f(s.dissipated),
-      f(s.work), f(s.loss_power);
-  visit(s.boundary, f);
-  visit(s.statistics, f);
-}
+ZSPRING_MEMBERS(MechanicalState, q, v, a, a_slope, h, internal, s, contact_force, dissipated, work, loss_power,
+                boundary, statistics)
 
 }  // namespace zspring

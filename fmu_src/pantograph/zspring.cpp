@@ -5,52 +5,26 @@
 #include "common/failure.hpp"
 
 namespace zspring {
-namespace {
-
-struct Shape {
-  double sin_a, cos_a, sin_b, cos_b;
-  double length;
-  double ex, ey;  // unit vector along the spring
-};
-
-inline std::optional<Shape> shape(const ZSpringParameters& z, double alpha, double beta, double gap) {
-  Shape s;
-  s.sin_a = std::sin(alpha);
-  s.cos_a = std::cos(alpha);
-  s.sin_b = std::sin(beta);
-  s.cos_b = std::cos(beta);
-  const double A = z.L1 * s.cos_a + z.L2 * s.cos_b - z.d;
-  const double B = gap - z.L1 * s.sin_a - z.L2 * s.sin_b;
-  s.length = std::sqrt(A * A + B * B);
-  if (!(s.length > shortest_length)) return std::nullopt;  // also NaN
-  s.ex = A / s.length;
-  s.ey = B / s.length;
-  return s;
-}
-
-inline Vector4 length_gradient(const ZSpringParameters& z, const Shape& s) {
-  return {-s.ey, -z.L1 * (s.ex * s.sin_a + s.ey * s.cos_a), -z.L2 * (s.ex * s.sin_b + s.ey * s.cos_b), s.ey};
-}
-
-}  // namespace
-
-std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta,
-                                                double gap) {
+std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta, double gap) {
+  const double sin_a = std::sin(alpha), cos_a = std::cos(alpha), sin_b = std::sin(beta), cos_b = std::cos(beta);
+  const double A = z.L1 * cos_a + z.L2 * cos_b - z.d;
+  const double B = gap - z.L1 * sin_a - z.L2 * sin_b;
+  const double length = std::sqrt(A * A + B * B);
   std::optional<ElementResponse> result;
-  const std::optional<Shape> known = shape(z, alpha, beta, gap);
-  if (!known) return result;
-  const Shape& s = *known;
+  if (!(length > shortest_length)) return result;  // also NaN
   ElementResponse& out = result.emplace();
-  const double T = out.tension = z.k * (s.length - z.l0);
-  const Vector4& n = out.gradient = length_gradient(z, s);
-  const Vector4 p(-s.ex, z.L1 * (s.ey * s.sin_a - s.ex * s.cos_a), z.L2 * (s.ey * s.sin_b - s.ex * s.cos_b), s.ex);
-  out.length = s.length;
-  out.energy = 0.5 * z.k * (s.length - z.l0) * (s.length - z.l0);
+  const double ex = A / length, ey = B / length;  // unit vector along the spring
+  const double T = out.tension = z.k * (length - z.l0);
+  const Vector4 n(-ey, -z.L1 * (ex * sin_a + ey * cos_a), -z.L2 * (ex * sin_b + ey * cos_b), ey);
+  const Vector4 p(-ex, z.L1 * (ey * sin_a - ex * cos_a), z.L2 * (ey * sin_b - ex * cos_b), ex);
+  out.gradient = n;
+  out.length = length;
+  out.energy = 0.5 * z.k * (length - z.l0) * (length - z.l0);
   out.force = T * n;
   out.tangent.noalias() = (z.k * n) * n.transpose();
-  out.tangent.noalias() += (T / s.length * p) * p.transpose();
-  out.tangent(1, 1) += T * z.L1 * (s.ey * s.sin_a - s.ex * s.cos_a);
-  out.tangent(2, 2) += T * z.L2 * (s.ey * s.sin_b - s.ex * s.cos_b);
+  out.tangent.noalias() += (T / length * p) * p.transpose();
+  out.tangent(1, 1) += T * z.L1 * (ey * sin_a - ex * cos_a);
+  out.tangent(2, 2) += T * z.L2 * (ey * sin_b - ex * cos_b);
   return result;
 }
 

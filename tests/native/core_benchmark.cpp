@@ -21,8 +21,7 @@ int main(int argc, char** argv) {
   double steps = 0, seconds = 0, frequency, acceleration;
   while (std::scanf("%lf %lf", &frequency, &acceleration) == 2) {
     const auto begin = std::chrono::steady_clock::now();
-    p.bench_frequency = frequency;
-    p.bench_acceleration = acceleration;
+    p.bench = {frequency, acceleration};
     Simulation simulation(p, Inputs());
     if (simulation.advance(Inputs(), std::atof(argv[2]) / frequency)) return 1;
     steps += static_cast<double>(simulation.statistics().steps);

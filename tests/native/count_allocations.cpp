@@ -69,9 +69,8 @@ int main(int argc, char** argv) {
     double real;
     if (std::sscanf(argv[i], "%c%u=%lf", &type, &vr, &real) != 3) return 2;
     const int integer = static_cast<int>(real);
-    const fmi2Status status = type == 'r'
-                                  ? load<fmi2SetRealTYPE>(library, "fmi2SetReal")(c, &vr, 1, &real)
-                                  : load<fmi2SetIntegerTYPE>(library, "fmi2SetInteger")(c, &vr, 1, &integer);
+    const fmi2Status status = type == 'r' ? load<fmi2SetRealTYPE>(library, "fmi2SetReal")(c, &vr, 1, &real)
+                                          : load<fmi2SetIntegerTYPE>(library, "fmi2SetInteger")(c, &vr, 1, &integer);
     if (status != fmi2OK) return 5;
   }
   load<fmi2SetupExperimentTYPE>(library, "fmi2SetupExperiment")(c, 0, 0, 0, 0, 0);

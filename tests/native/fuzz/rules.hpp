@@ -10,7 +10,7 @@
 
 namespace fuzz {
 
-using zspring::Causality;
+using zspring::fmi::Causality;
 using zspring::fmi::Type;
 using zspring::fmi::Variable;
 using zspring::fmi::variable_count;
@@ -38,8 +38,7 @@ inline bool may_set(unsigned reference, Type type, State state, double x) {
   if (!is_settable(state) || !exists(reference, type)) return false;
   const Variable& v = variables[reference];
   const bool early = state == Instantiated || state == Initialization;
-  const bool now =
-      v.causality == Causality::Input || (v.causality == Causality::Parameter && (early || v.tunable));
+  const bool now = v.causality == Causality::Input || (v.causality == Causality::Parameter && (early || v.tunable));
   return now && std::isfinite(x) && x >= v.min && x <= v.max;
 }
 

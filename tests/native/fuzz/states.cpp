@@ -106,8 +106,7 @@ std::vector<char> Subject::serialize(const KeptState& kept) {
 
 void Subject::deserialize(const std::vector<char>& bytes, KeptState& kept, const Expected* original) {
   begin_call();
-  if (judge("fmi2DeSerializeFMUstate",
-            fmi2DeSerializeFMUstate(component_, bytes.data(), bytes.size(), &kept.state),
+  if (judge("fmi2DeSerializeFMUstate", fmi2DeSerializeFMUstate(component_, bytes.data(), bytes.size(), &kept.state),
             bytes.empty() ? Refused
             : original    ? Ok
                           : Ok | Refused) != fmi2OK)

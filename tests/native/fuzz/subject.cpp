@@ -37,8 +37,8 @@ std::vector<char> Subject::snapshot() {
   fmi2FMUstate state = nullptr;
   std::size_t size = 0;
   std::vector<char> bytes;
-  bool ok = fmi2GetFMUstate(component_, &state) == fmi2OK &&
-            fmi2SerializedFMUstateSize(component_, state, &size) == fmi2OK;
+  bool ok =
+      fmi2GetFMUstate(component_, &state) == fmi2OK && fmi2SerializedFMUstateSize(component_, state, &size) == fmi2OK;
   bytes.resize(size);
   ok = ok && fmi2SerializeFMUstate(component_, state, bytes.data(), size) == fmi2OK &&
        fmi2FreeFMUstate(component_, &state) == fmi2OK;
@@ -96,8 +96,7 @@ void Subject::setup(Bytes& in) {
   const bool has_stop = in.one_in(3);
   const bool right = expected_.state == Instantiated && std::isfinite(start) && (!has_stop || stop >= start);
   begin_call();
-  if (judge("fmi2SetupExperiment",
-            fmi2SetupExperiment(component_, in.one_in(2), in.number(), start, has_stop, stop),
+  if (judge("fmi2SetupExperiment", fmi2SetupExperiment(component_, in.one_in(2), in.number(), start, has_stop, stop),
             right ? Ok : Refused) == fmi2OK) {
     expected_.time = start;
     expected_.stop = stop;
@@ -241,8 +240,7 @@ void Subject::never_allowed(Bytes& in) {
 }
 
 void Subject::set_debug_logging(Bytes& in) {
-  const fmi2String names[] = {"logAll",   "logSolver", "logStatusError", "logStatusWarning",
-                              "nonsense", "",          nullptr};
+  const fmi2String names[] = {"logAll", "logSolver", "logStatusError", "logStatusWarning", "nonsense", "", nullptr};
   fmi2String chosen[3];
   const std::size_t n = in.below(4);
   bool right = true;

@@ -55,8 +55,7 @@ void Subject::set_one(unsigned reference, double x) {
   const int integer = static_cast<int>(x);
   const bool real = variables[reference].type == Type::Real;
   begin_call();
-  judge("set",
-        real ? fmi2SetReal(component_, &reference, 1, &x) : fmi2SetInteger(component_, &reference, 1, &integer),
+  judge("set", real ? fmi2SetReal(component_, &reference, 1, &x) : fmi2SetInteger(component_, &reference, 1, &integer),
         Ok);
   expected_.value[reference] = x;
 }
@@ -86,10 +85,8 @@ void Subject::get(Bytes& in) {
   if (judge("get", status, allowed) != fmi2OK) return;
   for (std::size_t i = 0; i < n; ++i) {
     const double x = type == Type::Real ? reals[i] : integers[i];
-    if (!std::isfinite(x))
-      fault("fmi2GetReal", std::string("OK but not finite: ") + variables[references[i]].name);
-    if (is_input_or_parameter(variables[references[i]]) && !expected_.foreign &&
-        x != expected_.value[references[i]])
+    if (!std::isfinite(x)) fault("fmi2GetReal", std::string("OK but not finite: ") + variables[references[i]].name);
+    if (is_input_or_parameter(variables[references[i]]) && !expected_.foreign && x != expected_.value[references[i]])
       fault("get", std::string("not what was set: ") + variables[references[i]].name);
   }
 }
@@ -141,10 +138,10 @@ void Subject::set_input_derivatives(Bytes& in) {
     right = right && may_set_input_derivative(references[i], orders[i], values[i]);
   }
   begin_call();
-  judge("fmi2SetRealInputDerivatives",
-        fmi2SetRealInputDerivatives(component_, n ? references : nullptr, n, n ? orders : nullptr,
-                                    n ? values : nullptr),
-        right ? Ok : Refused);
+  judge(
+      "fmi2SetRealInputDerivatives",
+      fmi2SetRealInputDerivatives(component_, n ? references : nullptr, n, n ? orders : nullptr, n ? values : nullptr),
+      right ? Ok : Refused);
 }
 
 void Subject::get_output_derivatives(Bytes& in) {
@@ -160,10 +157,10 @@ void Subject::get_output_derivatives(Bytes& in) {
   }
   begin_call();
   // Refused where it overflows.
-  const fmi2Status status = judge("fmi2GetRealOutputDerivatives",
-                                  fmi2GetRealOutputDerivatives(component_, n ? references : nullptr, n,
-                                                               n ? orders : nullptr, n ? values : nullptr),
-                                  right ? Ok | Refused : Refused);
+  const fmi2Status status = judge(
+      "fmi2GetRealOutputDerivatives",
+      fmi2GetRealOutputDerivatives(component_, n ? references : nullptr, n, n ? orders : nullptr, n ? values : nullptr),
+      right ? Ok | Refused : Refused);
   if (status == fmi2OK && !std::all_of(values, values + 3, [](double x) { return std::isfinite(x); }))
     fault("fmi2GetRealOutputDerivatives", "OK but not finite");
 }

@@ -1,28 +1,28 @@
-#include "step_derivative.hpp"
+#include "hht.hpp"
 
 namespace zspring {
 namespace {
 
 double head_force_change(const Parameters& p, bool closed, const Boundary& db, double du, double dv) {
   if (p.drive == Drive::Force) return db.contact_force;
-  return closed ? p.contact_k * (du - db.position) + p.contact_c * (dv - db.velocity) : 0;
+  return closed ? p.contact.k * (du - db.position) + p.contact.c * (dv - db.velocity) : 0;
 }
 
 }  // namespace
 
-MechanicalState step_derivative(const Hht& hht, const MechanicalState& from, const Boundary& b0,
-                                const Boundary& b1, double h, const MechanicalState& to,
-                                const MechanicalState& dfrom, const Boundary& db0, const Boundary& db1) {
-  const Mechanics& m = hht.mechanics();
-  const Parameters& p = m.parameters;
-  const StepCoefficients c(m, h);
-  const bool imposed = hht.head_imposed();
+MechanicalState Hht::step_variation(const MechanicalState& from, const MechanicalState& to,
+                                    const MechanicalState& dfrom, const Boundary& db1) const {
+  const Boundary &b0 = from.boundary, &b1 = to.boundary, &db0 = dfrom.boundary;
+  const Parameters& p = m_.parameters;
+  const double h = to.h;
+  const StepCoefficients c(m_, h);
+  const bool imposed = head_imposed();
 
   Trial t;
   t.x = to.a;
   t.v = to.v;
   joints(t.x) = c.rho.cwiseProduct(joints(to.v)) + to.s;
-  hht.evaluate(c, from, b1, false, t);
+  evaluate(c, from, b1, false, t);
 
   // With the unknowns held: the part of the variation that the old state brings.
   MechanicalState d;
@@ -41,15 +41,15 @@ MechanicalState step_derivative(const Hht& hht, const MechanicalState& from, con
   }
 
   Vector5 old = dfrom.internal - on_masses(db0.uplift);
-  Vector5 now = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v) - on_masses(db1.uplift);
+  Vector5 now = m_.spring_force_change(t.head_tangent, d.q) + m_.damping_force(d.v) - on_masses(db1.uplift);
   if (!imposed) {
-    const bool closed = hht.contact(b0, from.q[U1], from.v[U1]).closed;
+    const bool closed = contact(b0, from.q[U1], from.v[U1]).closed;
     old[U1] += head_force_change(p, closed, db0, dfrom.q[U1], dfrom.v[U1]);
     now[U1] += head_force_change(p, t.contact.closed, db1, d.q[U1], d.v[U1]);
   }
-  Vector5 x = m.mass.cwiseProduct(d.a) + c.weight * now - c.hht_alpha * old;
+  Vector5 x = m_.mass.cwiseProduct(d.a) + c.weight * now - c.hht_alpha * old;
   if (imposed) x[U1] = 0;
-  hht.solve(c, t, x);
+  solve(c, t, x);
 
   for (int i : mass_dof) {
     if (i == U1 && imposed) continue;
@@ -67,17 +67,16 @@ MechanicalState step_derivative(const Hht& hht, const MechanicalState& from, con
   d.a_slope = tells_slope(h, from.h) ? Vector5((d.a - dfrom.a) / h) : dfrom.a_slope;
   for (int j = 0; j < 2; ++j)
     if (t.angle_slope[j] == 0) d.a[joint_dof[j]] = d.a_slope[joint_dof[j]] = 0;
-  d.internal = m.spring_force_change(t.head_tangent, d.q) + m.damping_force(d.v);
-  joints(d.internal) += m.moment_bound.cwiseProduct(d.s);
-  d.contact_force =
-      imposed ? hht.reaction(db1, d.internal) : head_force_change(p, t.contact.closed, db1, d.q[U1], d.v[U1]);
+  d.internal = m_.spring_force_change(t.head_tangent, d.q) + m_.damping_force(d.v);
+  joints(d.internal) += m_.moment_bound.cwiseProduct(d.s);
+  d.contact_force = imposed ? reaction(db1, d.internal) : head_force_change(p, t.contact.closed, db1, d.q[U1], d.v[U1]);
   d.boundary = db1;
 
-  d.loss_power = 2 * to.v.dot(m.damping_force(d.v));
-  d.loss_power += m.moment_bound.dot(d.s.cwiseProduct(joints(to.v)) + to.s.cwiseProduct(joints(d.v)));
+  d.loss_power = 2 * to.v.dot(m_.damping_force(d.v));
+  d.loss_power += m_.moment_bound.dot(d.s.cwiseProduct(joints(to.v)) + to.s.cwiseProduct(joints(d.v)));
   d.dissipated = dfrom.dissipated + 0.5 * h * (dfrom.loss_power + d.loss_power);
-  const Vector5 mean_push = m.preload + 0.5 * (hht.push(b0, from.contact_force) + hht.push(b1, to.contact_force));
-  const Vector5 d_push = 0.5 * (hht.push(db0, dfrom.contact_force) + hht.push(db1, d.contact_force));
+  const Vector5 mean_push = m_.preload + 0.5 * (push(b0, from.contact_force) + push(b1, to.contact_force));
+  const Vector5 d_push = 0.5 * (push(db0, dfrom.contact_force) + push(db1, d.contact_force));
   d.work = dfrom.work + mean_push.dot(d.q - dfrom.q) + d_push.dot(to.q - from.q);
   return d;
 }
