@@ -43,7 +43,9 @@ def table(root, guid):
     items = {
         t.get("name"): [f"{i.get('value')} {i.get('name')}" for i in t.iter("Item")] for t in root.iter("SimpleType")
     }
-    identifiers, outputs, rows = {}, [], []
+    identifiers: dict[str, str] = {}
+    outputs: list[str] = []
+    rows: list[str] = []
     for place, variable in enumerate(root.find("ModelVariables")):
         name, causality, value = variable.get("name"), variable.get("causality"), variable[0]
         if variable.get("valueReference") != str(place):
@@ -58,7 +60,7 @@ def table(root, guid):
         if causality == "output":
             continuous = value.tag == "Real" and variable.get("variability", "continuous") == "continuous"
             identifiers[identifier] = f"{identifier}, {str(continuous).lower()}"
-            known_as = len(outputs)
+            known_as = str(len(outputs))
             outputs.append(f"{identifier}, {element}")
         else:
             known_as = OTHER_MEMBER.get(name) or re.sub(r"\[\d+\]", f"[{element}]", name)
