@@ -40,6 +40,9 @@ def test_the_head_of_the_file_has_every_parameter_with_its_unit(fmu, tmp_path):
             continue
         assert f"# {name}: " in text, name
     assert "# zspring.Mf: 0.2 N.m" in text and "# solver.step: 0.002 s" in text
+    (synthetic,) = (line.split()[2:] for line in text.splitlines() if line.startswith("# synthetic:"))
+    described = {name for name in fmu.names("parameter") if "(synthetic)" in fmu.variables[name].description}
+    assert set(synthetic) == described - {"zspring.Mf"} and "zspring.k" in synthetic  # a value of one's own is not
 
 
 def test_an_interrupted_measurement_continues_to_the_same_file(tmp_path):

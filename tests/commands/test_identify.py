@@ -157,6 +157,26 @@ def test_the_search_finds_what_least_squares_alone_miss(tmp_path):
     np.testing.assert_allclose(found.values, [values["k1"], values["k2"]], rtol=1e-6)
 
 
+def test_the_search_tries_the_start_values_first_and_keeps_to_the_bounds(tmp_path):
+    """Of a cost with its least value there it finds no better."""
+
+    class Bowl:
+        def __init__(self):
+            self.start, self.asked = np.array([0.3, 1.2]), []  # the second one beyond its bound
+
+        def costs(self, xs):
+            self.asked += [np.array(x) for x in xs]
+            return np.array([np.sum((x - [0.3, 1.0]) ** 2) for x in xs])
+
+    bowl = Bowl()
+    with cost_record(tmp_path / "record.csv", {}, ["m1", "m2"]) as record:
+        x = search(bowl, Search(generations=2), record, threading.Event(), lambda generation, cost: None)
+    np.testing.assert_array_equal(x, [0.3, 1.0])
+    first = np.array(bowl.asked[:20])  # 10 candidates for each parameter
+    assert any(np.array_equal(each, [0.3, 1.0]) for each in first)
+    assert np.all((np.array(bowl.asked) >= 0) & (np.array(bowl.asked) <= 1)) and len(bowl.asked) == 60
+
+
 def zspring_fit(folder: Path, free: str, extra: str = "") -> tuple[str, dict[str, float]]:
     """Output and fitted parameters of a fit to bench.csv in the folder."""
     text = f'model = "zspring"\n{extra}\n[[measurement]]\nfile = "bench.csv"\n[free]\n{free}\n'

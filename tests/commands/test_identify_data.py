@@ -399,6 +399,7 @@ def test_settings_give_the_parameters_of_every_x(tmp_path):
         assert values["zspring.k"] == pytest.approx(stiffness, rel=1e-15)
         assert (values["m1"], values["friction"]) == (7.5, 2)
         assert values["zspring.J2"] == 2 * inertia
+        assert values["solver.step"] == 5e-4  # unless given: at 2 ms the solver's own error would be fitted
     (free,) = settings.free.values()
     assert free.value(free.x(free.start)) == pytest.approx(free.start, rel=1e-12)
 

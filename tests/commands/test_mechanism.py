@@ -87,6 +87,27 @@ def test_magnifications_are_one_two_five_ten_and_no_more_than_there_is_room_for(
         assert magnification(cycle) == factor
 
 
+@pytest.mark.parametrize("share, slips", [(0.095, False), (0.105, True)])
+def test_rods_slip_from_a_tenth_of_what_free_ones_would_turn(share, slips):
+    """A compression of 10 mm turns free rods by 10 mm cos(theta)^2 / d; the larger of both counts."""
+    compression, theta, d = np.array([0.0, 0.004, -0.006]), 0.5, 0.17
+    turn = share * 0.010 * np.cos(theta) ** 2 / d * np.array([0.0, 1.0, 0.5])
+    parameters = {"zspring.theta": theta, "zspring.d": d}
+    for alpha, beta in ((turn, 0 * turn), (0 * turn, turn)):
+        cycle = Cycle(2.0, 1.0, parameters, -compression, theta + alpha, theta + beta, 0 * turn, np.zeros((3, 2)))
+        assert cycle.slips == slips
+
+
+def test_a_cycle_is_taken_when_the_start_is_forgotten(instance):
+    """A linear head makes the frame follow in one sine; what is left of the start would be none of that frequency."""
+    locked = instance.variables.parse_assignments(["suspension=LinearLocked"])
+    cycle = simulate_cycle(instance, locked, 3.0, 2.0)
+    harmonics = np.abs(np.fft.rfft(cycle.u2))
+    assert harmonics[1] > 0 and harmonics[2:].max() < 1e-3 * harmonics[1]
+    amplitude = 2.0 / (6 * np.pi) ** 2
+    np.testing.assert_allclose((cycle.u1.max(), cycle.u1.min()), (amplitude, -amplitude), rtol=1e-3)
+
+
 def test_the_spring_is_drawn_from_end_to_end():
     start, end = np.array([1.0, 2.0]), np.array([40.0, -20.0])
     line = spring_line(start, end)

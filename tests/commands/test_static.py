@@ -13,7 +13,7 @@ import signal
 import numpy as np
 import pytest
 
-from commands import PNG, table, zspring
+from commands import PNG, head, table, zspring
 from zspring.bench.loops import measure_loop
 from zspring.fmu import Fmu
 from zspring.interrupt import Interrupted
@@ -93,6 +93,9 @@ def test_the_command_writes_its_files_and_says_where_friction_ends(tmp_path):
     rows = table(tmp_path / "out/stiffness.csv")
     assert len(rows) == 8
     assert "Coulomb, 1 mm/s" in out and "largest change with the rate" in out
+    listed = {line[2:].partition(":")[0] for line in head(tmp_path / "out/stiffness.csv")}
+    assert {"m1", "zspring.Mf", "clamped frame"} <= listed
+    assert not {"drive", "friction", "k2", "k3", "solver.step"} & listed  # which each loop has its own of
     loops = table(tmp_path / "out/loops.csv")
     for row in rows:
         own = [r for r in loops if all(r[key] == row[key] for key in ("friction", "rate [m/s]", "amplitude [m]"))]
