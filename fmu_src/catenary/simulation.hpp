@@ -4,7 +4,6 @@
 #include "common/model.hpp"
 #include "communication_step.hpp"
 #include "hht.hpp"
-#include "outputs.hpp"
 
 namespace zspring::catenary {
 

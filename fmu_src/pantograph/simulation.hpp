@@ -3,7 +3,6 @@
 
 #include "common/model.hpp"
 #include "communication_step.hpp"
-#include "outputs.hpp"
 
 namespace zspring {
 
@@ -33,7 +32,6 @@ class Simulation final : public Model<Inputs, SimulationState, Held> {
     return zspring::largest_internal_step(mechanics_.parameters, held);
   }
   std::optional<Discard> run(const Held& held) override;
-  View view() const { return {hht_, state_.mechanical, state_.bench}; }
   Outputs present_outputs() const override;
   Outputs change(const MechanicalState& d) const;  // of the outputs, with that of the state
   bool is_possible(const SimulationState& s) const override;
