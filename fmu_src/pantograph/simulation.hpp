@@ -6,7 +6,7 @@
 
 namespace zspring {
 
-class Simulation final : public Model<Inputs, SimulationState, Held> {
+class Simulation final : public Model<Simulation, Inputs, SimulationState, Held> {
  public:
   // Starts at rest in the static state under the inputs' values.
   Simulation(const Parameters& parameters, const Inputs& inputs);
@@ -25,6 +25,8 @@ class Simulation final : public Model<Inputs, SimulationState, Held> {
   const Statistics& statistics() const { return state_.mechanical.statistics; }
 
  private:
+  friend Model;
+
   Held hold(const Inputs& inputs, double length) const override {
     return {inputs, mechanics_.parameters.bench, length};
   }
