@@ -23,11 +23,9 @@ def own_sources(model: str, generated: Path) -> dict[str, bytes]:
 
     generated   folder of the model's variables.inc
     """
-    files = [file for part in ("common", model) for file in (FMU_SRC / part).glob("*.[ch]pp")]
-    files += (FMU_SRC / "fmi").glob("*.[ch]pp")
+    files = [file for part in ("common", model, "fmi") for file in (FMU_SRC / part).glob("*.[ch]pp")]
     sources = {file.relative_to(FMU_SRC).as_posix(): file.read_bytes() for file in files}
-    for file in (FMU_SRC / "fmi" / model).glob("*.hpp"):
-        sources[f"fmi/{file.name}"] = file.read_bytes()
+    sources["fmi/model.hpp"] = (FMU_SRC / "fmi" / model / "model.hpp").read_bytes()
     sources["variables.inc"] = (generated / "variables.inc").read_bytes()
     return sources
 

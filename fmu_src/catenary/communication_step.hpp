@@ -30,18 +30,18 @@ ZSPRING_MEMBERS(Held, inputs, length)
 class CommunicationStep {
  public:
   CommunicationStep(const Line& line, const Passage begin[pantographs], const Held& held)
-      : line_(line), begin_(begin), inputs_(held.inputs), length_(held.length) {}
+      : line_(line), begin_(begin), held_(held) {}
 
   // Linear in begin and inputs: of variations it returns the variation.
   Passage at(int i, double tau) const {
-    const PantographInputs& u = inputs_.pantograph[i];
+    const PantographInputs& u = held_.inputs.pantograph[i];
     const Passage& from = begin_[i];
-    const double force = u.force.from(from.force, length_).at(tau);
+    const double force = u.force.from(from.force, held_.length).at(tau);
     if (line_.p.travel == Travel::Position) {
-      const Signal x = u.position.from(from.position, length_);
+      const Signal x = u.position.from(from.position, held_.length);
       return {x.at(tau), x.rate_at(tau), force};
     }
-    const Signal speed = u.speed.from(from.speed, length_);
+    const Signal speed = u.speed.from(from.speed, held_.length);
     return {from.position + speed.integral(tau), speed.at(tau), force};
   }
 
@@ -63,17 +63,16 @@ class CommunicationStep {
   // m/s2, at the end.
   double speed_rate(int i) const {
     if (line_.p.travel == Travel::Position) return 0;
-    return inputs_.pantograph[i].speed.from(begin_[i].speed, length_).rate_at(length_);
+    return held_.inputs.pantograph[i].speed.from(begin_[i].speed, held_.length).rate_at(held_.length);
   }
 
-  Count internal_steps() const { return zspring::internal_steps(length_, line_.p.solver.step); }
-  double length() const { return length_; }
+  Count internal_steps() const { return zspring::internal_steps(held_.length, line_.p.solver.step); }
+  double length() const { return held_.length; }
 
  private:
   const Line& line_;
   const Passage* begin_;
-  const Inputs& inputs_;
-  double length_;
+  const Held& held_;
 };
 
 }  // namespace zspring::catenary

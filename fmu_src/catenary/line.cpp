@@ -3,24 +3,16 @@
 #include "droppers.hpp"
 
 namespace zspring::catenary {
-namespace {
 
-Matrices with_droppers(Matrices m, const Parameters& p, const Mesh& mesh, const StaticShape& shape) {
+Line::Line(const Parameters& parameters)
+    : p(parameters), mesh(p), matrices(p, mesh), shape(static_shape(p, mesh, matrices)) {
   for (size_t j = 0; j < mesh.droppers.size(); ++j) {
     const double half = 0.5 * p.dropper.mass * shape.length[static_cast<Eigen::Index>(j)];
     for (Wire wire : {Contact, Messenger}) {
       const int dof = deflection(mesh.droppers[j], wire);
-      m.mass.coeffRef(dof, dof) += half;
-    };
+      matrices.mass.coeffRef(dof, dof) += half;
+    }
   }
-  return m;
-}
-
-}  // namespace
-
-Line::Line(const Parameters& parameters)
-    : p(parameters), mesh(p), matrices(p, mesh), shape(static_shape(p, mesh, matrices)) {
-  matrices = with_droppers(std::move(matrices), p, mesh, shape);
 }
 
 void Line::add_springs(const VectorXd& u, VectorXd& internal) const {

@@ -32,13 +32,6 @@ Matrix4d beam_mass(const WireParameters& w, double l) {
   return w.mass * l / 420 * m;
 }
 
-Vector4d uniform_load(double l) { return {l / 2, l * l / 12, l / 2, -l * l / 12}; }
-
-void add_element(const Matrix4d& block, const int dof[4], Triplets& triplets) {
-  for (int i = 0; i < 4; ++i)
-    for (int k = 0; k < 4; ++k) triplets.emplace_back(dof[i], dof[k], block(i, k));
-}
-
 }  // namespace
 
 bool is_anchor(const Mesh& mesh, int dof) { return dof % 2 == 0 && (dof < 4 || dof >= 4 * (mesh.stations() - 1)); }
@@ -60,10 +53,15 @@ Matrices::Matrices(const Parameters& p, const Mesh& mesh) : weight(VectorXd::Zer
     for (int i = 0; i + 1 < mesh.stations(); ++i) {
       const double l = mesh.x[i + 1] - mesh.x[i];
       const int dof[] = {deflection(i, wire), slope(i, wire), deflection(i + 1, wire), slope(i + 1, wire)};
-      add_element(beam_stiffness(w, l), dof, stiffness);
-      add_element(beam_mass(w, l), dof, inertia);
-      const Vector4d load = w.mass * p.gravity * uniform_load(l);
-      for (int k = 0; k < 4; ++k) weight[dof[k]] += load[k];
+      const Matrix4d beam = beam_stiffness(w, l), mass_of_beam = beam_mass(w, l);
+      const Vector4d load = w.mass * p.gravity * Vector4d(l / 2, l * l / 12, l / 2, -l * l / 12);
+      for (int k = 0; k < 4; ++k) {
+        weight[dof[k]] += load[k];
+        for (int m = 0; m < 4; ++m) {
+          stiffness.emplace_back(dof[k], dof[m], beam(k, m));
+          inertia.emplace_back(dof[k], dof[m], mass_of_beam(k, m));
+        }
+      }
     }
   }
   for (int station : mesh.droppers) {

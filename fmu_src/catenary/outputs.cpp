@@ -3,6 +3,35 @@
 namespace zspring::catenary {
 namespace {
 
+// What the definitions are written with.
+struct View {
+  View(const Line& overhead, const LineState& state) : line(overhead), s(state) {
+    for (int i = 0; i < pantographs; ++i) contact[i] = line.mesh.at(s.passage[i].position);
+    for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point.position[i]);
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (int j = 0; j < static_cast<int>(line.mesh.droppers.size()); ++j) {
+      const double force = dropper_force(j);
+      slack += s.slack[j] > 0;
+      if (force < least) least = force, weakest = j;
+      if (force > most) most = force, strongest = j;
+    }
+  }
+
+  bool pulls(int j) const { return !line.mesh.droppers.empty() && !(s.slack[j] > 0); }
+  double dropper_force(int j) const {
+    return pulls(j) ? line.shape.tension[j] + line.shape.stiffness[j] * stretch(line.mesh, s.u, j) : 0;
+  }
+  double dropper_force_change(const LineState& d, int j) const {
+    return pulls(j) ? line.shape.stiffness[j] * stretch(line.mesh, d.u, j) : 0;
+  }
+
+  const Line& line;
+  const LineState& s;
+  Place contact[pantographs], point[most_points];  // under the pantographs; watched
+  Count slack = 0;                                 // droppers
+  int weakest = 0, strongest = 0;                  // droppers
+};
+
 // Of the contact wire at a place that moves: its height over the line's datum, its lift from the unloaded shape,
 // the rate of its height.
 Eigen::Vector4d heights(const View& x, const Place& at) { return at.of(x.s.u) + at.of(x.line.shape.height); }
@@ -30,32 +59,9 @@ double at_support(const View& x, const VectorXd& u, int i) {
   return i < static_cast<int>(supports.size()) ? u[deflection(supports[i], Contact)] : 0;
 }
 
-double force_change(const View& x, const LineState& d, int dropper) {
-  if (x.line.mesh.droppers.empty() || x.s.slack[dropper] > 0) return 0;
-  return x.line.shape.stiffness[dropper] * stretch(x.line.mesh, d.u, dropper);
-}
-
 const Passage stays;
 
 }  // namespace
-
-View::View(const Line& overhead, const LineState& state) : line(overhead), s(state) {
-  for (int i = 0; i < pantographs; ++i) contact[i] = line.mesh.at(s.passage[i].position);
-  for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point.position[i]);
-  double least = HUGE_VAL, most = -HUGE_VAL;
-  for (int j = 0; j < static_cast<int>(line.mesh.droppers.size()); ++j) {
-    const double force = dropper_force(j);
-    slack += s.slack[j] > 0;
-    if (force < least) least = force, weakest = j;
-    if (force > most) most = force, strongest = j;
-  }
-}
-
-double View::dropper_force(int j) const {
-  if (line.mesh.droppers.empty() || s.slack[j] > 0) return 0;
-  return line.shape.tension[j] + line.shape.stiffness[j] * stretch(line.mesh, s.u, j);
-}
-
 }  // namespace zspring::catenary
 
 namespace zspring {
@@ -71,8 +77,8 @@ OUTPUT(point_dot_height, height(x, x.point[i]), height_change(x, x.point[i], d, 
 OUTPUT(point_dot_uplift, uplift(x, x.point[i]), uplift_change(x, x.point[i], d, stays))
 OUTPUT(point_dot_velocity, velocity(x, x.point[i], 0), velocity_change(x, x.point[i], 0, d, stays))
 DISCRETE(droppers_dot_slack, x.slack)
-OUTPUT(droppers_dot_force_min, x.dropper_force(x.weakest), force_change(x, d, x.weakest))
-OUTPUT(droppers_dot_force_max, x.dropper_force(x.strongest), force_change(x, d, x.strongest))
+OUTPUT(droppers_dot_force_min, x.dropper_force(x.weakest), x.dropper_force_change(d, x.weakest))
+OUTPUT(droppers_dot_force_max, x.dropper_force(x.strongest), x.dropper_force_change(d, x.strongest))
 LINEAR(energy_dot_kinetic, kinetic)
 LINEAR(energy_dot_elastic, elastic)
 LINEAR(energy_dot_dissipated, dissipated)

@@ -8,8 +8,6 @@
 
 namespace zspring::catenary {
 
-constexpr int most_spans = 40;
-constexpr int most_supports = most_spans + 1;
 constexpr int most_droppers = 20;  // of a span
 constexpr int most_points = 8;
 constexpr int pantographs = 2;

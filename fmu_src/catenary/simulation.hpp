@@ -4,11 +4,10 @@
 #include "common/model.hpp"
 #include "communication_step.hpp"
 #include "hht.hpp"
-#include "outputs.hpp"
 
 namespace zspring::catenary {
 
-class Simulation final : public Model<Inputs, LineState, Held> {
+class Simulation final : public Model<Simulation, Inputs, LineState, Held> {
  public:
   Simulation(const Parameters& parameters, const Inputs& inputs);
 
@@ -21,6 +20,8 @@ class Simulation final : public Model<Inputs, LineState, Held> {
   const Calculated& calculated() const { return calculated_; }
 
  private:
+  friend Model;
+
   Held hold(const Inputs& inputs, double length) const override { return {inputs, length}; }
   double largest_internal_step(const Held&) const override { return line_.p.solver.step; }
   // Discarded where a pantograph that presses leaves the line, or the slack droppers could not be found.

@@ -14,7 +14,8 @@ namespace zspring {
 // parameters: of those referred to, the tunable ones may change between steps.
 //
 // State is all that changes; Held, with `inputs` and `length`, what holds during one communication step.
-template <class Inputs, class State, class Held>
+// Simulation is the model itself, a final class, so that its functions are called directly.
+template <class Simulation, class Inputs, class State, class Held>
 class Model {
  public:
   Model() = default;
@@ -23,10 +24,11 @@ class Model {
 
   // Over `length` > 0 s. Does not allocate.
   std::optional<Discard> advance(const Inputs& inputs, double length) {
-    const Held held = hold(inputs, length);
-    if (std::optional<Discard> discard = too_long(length, largest_internal_step(held))) return discard;
+    Simulation& self = static_cast<Simulation&>(*this);
+    const Held held = self.hold(inputs, length);
+    if (std::optional<Discard> discard = too_long(length, self.largest_internal_step(held))) return discard;
     begin_ = state_;
-    std::optional<Discard> discard = run(held);
+    std::optional<Discard> discard = self.run(held);
     forget_outputs();
     if (!discard && !all_finite(outputs())) discard = Discard{length, text("%s", overflow)};
     if (discard) {
@@ -41,7 +43,7 @@ class Model {
 
   // At the end of the last step; made once for each state.
   const Outputs& outputs() {
-    if (!outputs_) outputs_ = present_outputs();
+    if (!outputs_) outputs_ = static_cast<Simulation&>(*this).present_outputs();
     return *outputs_;
   }
   // To be called where parameters changed.

@@ -59,11 +59,6 @@ void Instance::setup_experiment(double start, bool has_stop, double stop) {
   time_ = start;
 }
 
-void Instance::exit_initialization() {
-  simulation();
-  phase = StepComplete;
-}
-
 void Instance::terminate() {
   log.write(fmi2OK, Category::logSolver, simulation().describe_run());
   phase = Terminated;

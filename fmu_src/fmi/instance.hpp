@@ -26,7 +26,7 @@ class Instance {
 
   void setup_experiment(double start, bool has_stop, double stop);
   void enter_initialization() { phase = Initialization; }
-  void exit_initialization();
+  void exit_initialization() { simulation(), phase = StepComplete; }
   void terminate();
   void reset();
 

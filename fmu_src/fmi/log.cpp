@@ -7,7 +7,6 @@ namespace {
 
 #define ZSPRING_CATEGORY_NAME(name) #name,
 constexpr const char* names_of_categories[] = {ZSPRING_LOG_CATEGORIES(ZSPRING_CATEGORY_NAME)};
-#undef ZSPRING_CATEGORY_NAME
 
 constexpr unsigned bit(Category c) { return 1u << static_cast<int>(c); }
 constexpr unsigned all = (1u << std::size(names_of_categories)) - 1;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/text.hpp"
+#include "common/failure.hpp"
 #include "fmi2FunctionTypes.h"
 #include "variables.inc"
 
@@ -11,7 +11,6 @@ namespace zspring::fmi {
 
 #define ZSPRING_CATEGORY(name) name,
 enum class Category { ZSPRING_LOG_CATEGORIES(ZSPRING_CATEGORY) };
-#undef ZSPRING_CATEGORY
 
 class Log {
  public:

@@ -21,7 +21,7 @@ Outputs Simulation::output_rates() {
     CommunicationStep(hht_, held_).run(again, quotient);
   }
   d.q = s.v;
-  d.v = acceleration(hht_, s);
+  d.v = hht_.acceleration(s);
   d.dissipated = s.loss_power;
   d.work = s.v.dot(mechanics_.preload + hht_.push(s.boundary, s.contact_force));
   return change(d);

@@ -136,6 +136,18 @@ double Hht::reaction(const Boundary& b, const Vector5& internal) const {
   return b.uplift[0] - m_.mass[U1] * (b.acceleration + b.acceleration_change) - internal[U1];
 }
 
+double Hht::head_acceleration(const MechanicalState& s) const {
+  if (head_imposed()) return s.boundary.acceleration + s.boundary.acceleration_change;
+  return (s.boundary.uplift[0] - s.internal[U1] - s.contact_force) / m_.mass[U1];
+}
+
+Vector5 Hht::acceleration(const MechanicalState& s) const {
+  Vector5 a = on_masses(s.boundary.uplift) - s.internal;
+  for (int i = 0; i < 5; ++i) a[i] = m_.mass[i] > 0 ? a[i] / m_.mass[i] : s.a[i];
+  a[U1] = head_acceleration(s);
+  return a;
+}
+
 Vector5 Hht::push(const Boundary& b, double contact_force) const {
   Vector5 f = on_masses(b.uplift);
   f[U1] -= contact_force;

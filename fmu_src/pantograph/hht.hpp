@@ -68,6 +68,10 @@ class Hht {
   // N, of an imposed motion, from the balance at this instant itself, where the acceleration is known to second
   // order; HHT's weighted balance would give the force of an earlier instant. Linear.
   double reaction(const Boundary& b, const Vector5& internal) const;
+  // The true accelerations at this instant, from the balance of forces; HHT's where a mass is 0, m/s2 and rad/s2. The
+  // head's is linear.
+  Vector5 acceleration(const MechanicalState& s) const;
+  double head_acceleration(const MechanicalState& s) const;
   // What does work on the pantograph at one instant, N, without the preload and so linear.
   Vector5 push(const Boundary& b, double contact_force) const;
   const Mechanics& mechanics() const { return m_; }

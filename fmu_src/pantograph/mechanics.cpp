@@ -14,15 +14,8 @@ Matrix4 vertical_spring(double k) {
 }
 
 FrictionLaw friction_law(const Parameters& p) {
-  switch (p.suspension) {
-    case Suspension::Linear:
-    case Suspension::LinearLocked:
-      return FrictionLaw::Locked;
-    case Suspension::LinearFree:
-      return FrictionLaw::Free;
-    case Suspension::ZSpring:
-      break;
-  }
+  if (p.suspension == Suspension::LinearFree) return FrictionLaw::Free;
+  if (p.suspension != Suspension::ZSpring) return FrictionLaw::Locked;
   if (p.friction == Friction::Locked) return FrictionLaw::Locked;
   if (p.friction == Friction::Free || p.zspring.Mf == 0) return FrictionLaw::Free;
   return p.friction == Friction::Coulomb ? FrictionLaw::Coulomb : FrictionLaw::Tanh;

@@ -3,17 +3,21 @@
 namespace zspring {
 namespace {
 
-Vector5 unbalanced_force(const MechanicalState& s) {
-  Vector5 f = on_masses(s.boundary.uplift) - s.internal;
-  f[U1] -= s.contact_force;
-  return f;
-}
+// What the definitions are written with.
+struct View {
+  View(const Hht& integrator, const SimulationState& state)
+      : hht(integrator),
+        m(hht.mechanics()),
+        s(state.mechanical),
+        bench(state.bench),
+        head(m.head_response(s.q).value_or(ElementResponse())) {}
 
-// Linear, so of variations too.
-double head_acceleration(const Hht& hht, const MechanicalState& s) {
-  if (hht.head_imposed()) return s.boundary.acceleration + s.boundary.acceleration_change;
-  return unbalanced_force(s)[U1] / hht.mechanics().mass[U1];
-}
+  const Hht& hht;
+  const Mechanics& m;
+  const MechanicalState& s;
+  const BenchState& bench;
+  ElementResponse head;  // there is one: the spring of an accepted state has a direction
+};
 
 double stretch(const View& x, const MechanicalState& d) { return x.head.gradient.dot(d.q.head<4>()); }
 
@@ -23,17 +27,9 @@ double elastic_change(const View& x, const MechanicalState& d) {
 
 }  // namespace
 
-Vector5 acceleration(const Hht& hht, const MechanicalState& s) {
-  const Vector5& mass = hht.mechanics().mass;
-  Vector5 a = unbalanced_force(s);
-  for (int i = 0; i < 5; ++i) a[i] = mass[i] > 0 ? a[i] / mass[i] : s.a[i];
-  a[U1] = head_acceleration(hht, s);
-  return a;
-}
-
 LINEAR(head_dot_z, q[U1])
 LINEAR(head_dot_v, v[U1])
-OUTPUT(head_dot_a, head_acceleration(x.hht, x.s), head_acceleration(x.hht, d))
+OUTPUT(head_dot_a, x.hht.head_acceleration(x.s), x.hht.head_acceleration(d))
 LINEAR(upper_frame_dot_z, q[U2])
 LINEAR(upper_frame_dot_v, v[U2])
 LINEAR(lower_frame_dot_z, q[U3])
@@ -60,7 +56,7 @@ DISCRETE(bench_dot_change, x.bench.change)
 DISCRETE(bench_dot_periods, x.bench.periods)
 DISCRETE(bench_dot_steps_per_period, steps_in_period(x.m.parameters.bench.frequency, x.m.parameters.solver.step))
 
-Outputs Simulation::present_outputs() const { return output_values(view()); }
-Outputs Simulation::change(const MechanicalState& d) const { return output_changes(view(), d); }
+Outputs Simulation::present_outputs() const { return output_values(View(hht_, state_)); }
+Outputs Simulation::change(const MechanicalState& d) const { return output_changes(View(hht_, state_), d); }
 
 }  // namespace zspring

@@ -23,7 +23,7 @@ MechanicalState Simulation::at_rest(const Inputs& inputs) const {
   if (const auto head = mechanics_.head_response(s.q)) s.internal = mechanics_.spring_force(s.q, *head);
   s.boundary = initial_boundary(inputs);
   s.contact_force = hht_.head_imposed() ? hht_.reaction(s.boundary, s.internal) : hht_.contact(s.boundary, 0, 0).force;
-  s.a = acceleration(hht_, s);
+  s.a = hht_.acceleration(s);
   return s;
 }
 

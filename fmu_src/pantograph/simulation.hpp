@@ -3,11 +3,10 @@
 
 #include "common/model.hpp"
 #include "communication_step.hpp"
-#include "outputs.hpp"
 
 namespace zspring {
 
-class Simulation final : public Model<Inputs, SimulationState, Held> {
+class Simulation final : public Model<Simulation, Inputs, SimulationState, Held> {
  public:
   // Starts at rest in the static state under the inputs' values.
   Simulation(const Parameters& parameters, const Inputs& inputs);
@@ -26,6 +25,8 @@ class Simulation final : public Model<Inputs, SimulationState, Held> {
   const Statistics& statistics() const { return state_.mechanical.statistics; }
 
  private:
+  friend Model;
+
   Held hold(const Inputs& inputs, double length) const override {
     return {inputs, mechanics_.parameters.bench, length};
   }
@@ -33,7 +34,6 @@ class Simulation final : public Model<Inputs, SimulationState, Held> {
     return zspring::largest_internal_step(mechanics_.parameters, held);
   }
   std::optional<Discard> run(const Held& held) override;
-  View view() const { return {hht_, state_.mechanical, state_.bench}; }
   Outputs present_outputs() const override;
   Outputs change(const MechanicalState& d) const;  // of the outputs, with that of the state
   bool is_possible(const SimulationState& s) const override;
