@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from paths import ROOT, SCRIPTS
+from zspring.cli import RESEARCH, commands
 
 PACKAGE = SCRIPTS / "zspring"
 SHARED = {"bench", "line"}
@@ -62,6 +63,16 @@ def test_imports_go_down_only(module):
     assert not others, f"{module} imports {others}"
     if module.endswith(".plot"):
         assert not below & {"fmu", "records"}, "a plot draws what others made"
+
+
+def test_every_command_is_in_the_command_line_and_on_a_page():
+    pages = "".join(page.read_text("utf-8") for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")))
+    known = set(commands.commands)
+    assert COMMANDS | set(RESEARCH) == known
+    assert {path.parent.name for path in (SCRIPTS / "research").rglob("command.py")} == set(RESEARCH)
+    for name in known:
+        assert re.search(rf"zspring {name}\b|scripts/{name}\b|`{name}`", pages), name
+        assert commands.commands[name].get_short_help_str(), name
 
 
 def test_the_core_knows_no_fmi():
