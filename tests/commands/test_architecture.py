@@ -66,7 +66,10 @@ def test_imports_go_down_only(module):
 
 
 def test_every_command_is_in_the_command_line_and_on_a_page():
-    pages = "".join(page.read_text("utf-8") for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")))
+    pages = "".join(
+        page.read_text("utf-8")
+        for page in (ROOT / "README.md", SCRIPTS / "research/README.md", *(ROOT / "docs").glob("*.md"))
+    )
     known = set(commands.commands)
     assert COMMANDS | set(RESEARCH) == known
     assert {path.parent.name for path in (SCRIPTS / "research").rglob("command.py")} == set(RESEARCH)
