@@ -30,3 +30,9 @@ def test_changelog():
     headings = re.findall(r"^## (.*)$", text, re.MULTILINE)
     assert len(headings) - len(versions) == ("[Unreleased]" in headings)
     assert set(re.findall(r"^### (.*)$", text, re.MULTILINE)) <= KINDS
+
+
+def test_the_citation_names_the_last_release():
+    newest = re.search(r"^## \[(\d+\.\d+\.\d+)\] - (\S+)$", CHANGELOG.read_text("utf-8"), re.MULTILINE)
+    citation = (ROOT / "CITATION.cff").read_text("utf-8")
+    assert newest and f"\nversion: {newest[1]}\n" in citation and f'\ndate-released: "{newest[2]}"\n' in citation
