@@ -89,8 +89,11 @@ def test_derivatives_before_the_first_step_are_those_of_the_state_of_rest(pantog
 @pytest.mark.parametrize("friction", ["Regularized", "Coulomb", "Free", "Locked"])
 @pytest.mark.parametrize("drive", DRIVES)
 def test_directional_derivatives_of_a_step_are_its_differences(pantograph, outputs, drive, friction, size):
-    """Up to 25 internal steps in a step; for the drive's own input and for each uplift."""
-    dampers = {"c1": 10.0, "c2": 20.0, "contact.c": 50.0}
+    """Up to 25 internal steps in a step; for the drive's own input and for each uplift.
+
+    Springs and dampers are of a size that matters: k3 starts at 0.1 N/m, which no difference would show.
+    """
+    dampers = {"c1": 10.0, "c2": 20.0, "contact.c": 50.0, "k3": 2000.0}
     smooth = {"zspring.tau": 20.0, "bench.acceleration": 3.0}
     p = in_motion(pantograph, dampers | smooth | {"drive": drive, "friction": friction})
     own, delta = DRIVES[drive]
