@@ -118,7 +118,7 @@ def test_two_builds_are_the_same_bytes(tmp_path):
     copy = tmp_path / "a copy elsewhere"
     shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".git", ".venv", "build*", "dist", "results"))
     (copy / ".venv").symlink_to(ROOT / ".venv")
-    subprocess.run([sys.executable, copy / "scripts" / "release.py", tmp_path / "again"], check=True)
+    subprocess.run([sys.executable, copy / "scripts" / "tooling" / "release.py", tmp_path / "again"], check=True)
     first = {path.name: path.read_bytes() for path in DIST.iterdir()}
     again = {path.name: path.read_bytes() for path in (tmp_path / "again").iterdir()}
     assert first.keys() == again.keys()
