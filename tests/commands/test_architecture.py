@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from paths import ROOT, SCRIPTS
-from zspring.cli import RESEARCH, commands
+from zspring.cli import RESEARCH, commands, research_command
+from zspring.errors import ZSpringError
 
 PACKAGE = SCRIPTS / "zspring"
 SHARED = {"bench", "line"}
@@ -98,3 +99,10 @@ def test_the_places_that_contributing_names_exist():
     for name in names - {"scripts/zspring/NAME", "scripts/zspring/NAME/command.py"}:
         own = [*FOLDERS, *PACKAGE.glob("*/")]
         assert any(any(folder.glob(name)) for folder in own), name
+
+
+def test_a_research_command_that_is_not_installed_tells_how_to(monkeypatch):
+    monkeypatch.setattr("zspring.cli.entry_points", lambda **_: ())
+    command = research_command("newton")
+    with pytest.raises(ZSpringError, match=r"^newton is not installed: in the clone, pip install \./scripts/research$"):
+        command.main(["--amplitudes", "1,4", "--quick"], standalone_mode=False)
