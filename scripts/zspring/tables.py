@@ -147,11 +147,6 @@ def read_table(path: Path, aliases: Mapping[str, str] | None = None) -> Table:
     return Table(path, _head(line for _, line in numbered), columns, [number for number, _ in rows], "".join(signs))
 
 
-def read_head(path: Path) -> dict[str, str]:
-    """Values by key of the lines "# key: value" at the head of a file."""
-    return _head(_text(path).splitlines())
-
-
 def read_rows(path: Path) -> tuple[dict[str, str], list[dict[str, str]]]:
     """Head, and rows by label, of a file that TableFile wrote, without a last line that is not complete."""
     lines = [line for line in _text(path).splitlines(keepends=True) if line.endswith("\n")]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Slave
 
-from harness import Fmu, Instance
+from harness import Fmu, Instance, differences
 
 LINE = {"line.spans": 3, "damping.mass": 0.02, "damping.stiffness": 1e-3, "steady_arm.mass": 0.5}
 FORCES = {"pantograph[1].force": 250.0, "pantograph[2].force": 150.0}
@@ -43,20 +43,6 @@ def in_motion(catenary, travel: str) -> Instance:
     return p
 
 
-def differences(p: Instance, name: str, outputs: list[str], size: float) -> np.ndarray:
-    """Central differences of the outputs after a step, with respect to the value of an input."""
-    delta = DELTAS[name.rsplit(".")[-1]]
-    state, value, ends = p.slave.getFMUstate(), p[name], []
-    for shifted in (value + delta, value - delta):
-        p.slave.setFMUstate(state)
-        p[name] = shifted
-        p.slave.doStep(p.time, size)
-        ends.append(p.reals(outputs))
-    p.slave.setFMUstate(state)
-    p.slave.freeFMUstate(state)
-    return (ends[0] - ends[1]) / (2 * delta)
-
-
 def directional(slave: FMU2Slave, p: Instance, outputs: list[str], name: str) -> np.ndarray:
     return np.array(slave.getDirectionalDerivative([p.reference(o) for o in outputs], [p.reference(name)], [1.0]))
 
@@ -77,7 +63,7 @@ def test_directional_derivatives_of_a_step_are_its_differences(catenary, fmu_cat
     if rates:
         p.set_derivatives("pantograph[1].force", 3000.0, 1e5)
         p.set_derivatives(inputs(travel)[1], 60.0 if travel == "Position" else 5.0)
-    expected = {name: differences(p, name, outputs, size) for name in inputs(travel)}
+    expected = {name: differences(p, outputs, name, DELTAS[name.rsplit(".")[-1]], size) for name in inputs(travel)}
     p.step(size)
     values = p.reals(outputs)
     for name, columns in expected.items():
@@ -101,7 +87,7 @@ def test_beside_the_anchors_derivatives_are_differences_too(catenary, fmu_catena
             name, value = ("speed", speeds[begin]) if travel == "Speed" else ("position", begin + speeds[begin] * time)
             p[f"pantograph[{i}].{name}"] = value
         p.step(size)
-    expected = {name: differences(p, name, outputs, size) for name in inputs(travel)}
+    expected = {name: differences(p, outputs, name, DELTAS[name.rsplit(".")[-1]], size) for name in inputs(travel)}
     p.step(size)
     for name, columns in expected.items():
         compare(directional(p.slave, p, outputs, name), columns, p.reals(outputs), DELTAS[name.rsplit(".")[-1]], name)

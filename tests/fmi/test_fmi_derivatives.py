@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from harness import PRECISE, Pantograph, Signal
+from harness import PRECISE, Pantograph, Signal, differences
 from models import each_case
 
 # Drive, its input, the size of the difference.
@@ -41,20 +41,6 @@ def in_motion(pantograph, parameters: dict) -> Pantograph:
     for name in inputs:
         p.set_derivatives(name, 0.0, 0.0)
     return p
-
-
-def differences(p: Pantograph, outputs: list[str], name: str, delta: float, size: float) -> np.ndarray:
-    """Central differences of `outputs` after a step, with respect to the input held in it."""
-    state, value = p.slave.getFMUstate(), p[name]
-    ends = []
-    for shifted in (value + delta, value - delta):
-        p.slave.setFMUstate(state)
-        p[name] = shifted
-        p.slave.doStep(p.time, size)
-        ends.append(p.reals(outputs))
-    p.slave.setFMUstate(state)
-    p.slave.freeFMUstate(state)
-    return (ends[0] - ends[1]) / (2 * delta)
 
 
 @pytest.mark.parametrize("wire", [0.0, 0.1])

@@ -269,6 +269,20 @@ def bench_point(
     return complex(*p.reals(["bench.H_re", "bench.H_im"]))
 
 
+def differences(p: Instance, outputs: list[str], name: str, delta: float, size: float) -> np.ndarray:
+    """Central differences of `outputs` after a step of `size` s, with respect to the input held in it."""
+    state, value = p.slave.getFMUstate(), p[name]
+    ends = []
+    for shifted in (value + delta, value - delta):
+        p.slave.setFMUstate(state)
+        p[name] = shifted
+        p.slave.doStep(p.time, size)
+        ends.append(p.reals(outputs))
+    p.slave.setFMUstate(state)
+    p.slave.freeFMUstate(state)
+    return (ends[0] - ends[1]) / (2 * delta)
+
+
 def fitted_order(steps: Sequence[float], errors: Sequence[float]) -> float:
     """Slope of log(error) against log(step)."""
     return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])

@@ -25,12 +25,11 @@ def missing(record: Record[Finished], runs: Iterable[Run]) -> list[Run]:
     return [run for run in runs if run.key not in found or (run.series and not (folder / run.series).exists())]
 
 
-def put_in_order(record: Record[Finished], runs: Iterable[Run]) -> dict[str, Finished]:
-    """Write the results in the order of the runs, then those of other plans; all by key."""
+def put_in_order(record: Record[Finished], runs: Iterable[Run]) -> None:
+    """Write the results in the order of the runs, then those of other plans."""
     found = {finished.key: finished for finished in record.results}
     first = [run.key for run in runs if run.key in found]
     record.write(found[key] for key in dict.fromkeys([*first, *found]))
-    return found
 
 
 def _to_row(finished: Finished) -> list[object]:
