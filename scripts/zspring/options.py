@@ -50,6 +50,18 @@ class Numbers(click.ParamType):
         return [round(start + i * step, 12) for i in range(math.floor((stop - start) / step + 1e-9) + 1)]
 
 
+class WholeNumbers(click.ParamType):
+    """Whole numbers from 1 between commas or blanks."""
+
+    name = "whole numbers"
+
+    def convert(self, value, param, ctx) -> tuple[int, ...]:
+        parts = value.replace(",", " ").split() if isinstance(value, str) else value
+        if not all(isinstance(part, int) or (part.isdecimal() and int(part) > 0) for part in parts):
+            self.fail(f"{value!r}: must be whole numbers from 1, as 1,3", param, ctx)
+        return tuple(map(int, parts))
+
+
 FILE = click.Path(path_type=Path, dir_okay=False)
 POSITIVE = click.FloatRange(min=0, min_open=True)
 

@@ -1,6 +1,6 @@
 """Units as people write them: one list of spellings for all readers, converted by pint.
 
-A unit is made of the symbols below: m/s2, m/s^2, m/s², (m/s2)/N, N.m, N·m, N m, kN/mm. "g" is the standard
+A unit is made of the symbols below: m/s2, m/s^2, m/s**2, m/s², (m/s2)/N, N.m, N·m, N m, kN/mm. "g" is the standard
 acceleration of gravity, as analysers write it. Nothing is guessed: what is not in the list is refused, and so is
 m/N.s, which could be m/(N.s) or (m/N).s.
 """
@@ -41,11 +41,12 @@ SYMBOLS = {
     "kHz": "kiloturn/second",
     "rpm": "turn/minute",
 }
+SPELLINGS = {"sec": "s", "HZ": "Hz", "hz": "Hz", "Hertz": "Hz", "RPM": "rpm"}  # of symbols
 SUPERSCRIPTS = str.maketrans("⁻¹²³⁴", "-1234")
 PRODUCTS = "*.·⋅ "
 NONE = ("", "1", "-")  # of a number without dimension
 
-_TOKEN = re.compile(r"([^\W\d_]+|°)\^?(-?\d+)?|(\d+)|([/*().·⋅ ])")
+_TOKEN = re.compile(r"([^\W\d_]+|°)(?:\^|\*\*)?(-?\d+)?|(\d+)|([/*().·⋅ ])")
 
 
 class UnitError(ZSpringError):
@@ -57,14 +58,13 @@ def conversion(unit: str, *wanted: str) -> tuple[str, float]:
 
     Raises UnitError for a unit that is not known, or that is of the kind of none of these.
     """
-    for target in wanted:
-        if unit == target or {unit, target} == {"1/s", "Hz"}:
-            return target, 1.0
+    if unit in wanted:
+        return unit, 1.0
     quantity = _pint(unit)
     for target in wanted if quantity is not None else ():
         other = _pint(target)
         if quantity.dimensionality == other.dimensionality:
-            factor = float((1 * quantity).m_as(other))
+            factor = float((1 * _counting(quantity, other)).m_as(other))
             short = float(f"{factor:.12g}")  # a millimetre is 0.001 m, not what a division leaves in the last bit
             return target, short if math.isclose(short, factor, rel_tol=1e-15) else factor
     raise UnitError(f"unit [{unit}]: must be one of {', '.join(offered(*wanted))}")
@@ -84,6 +84,16 @@ def is_unit(text: str) -> bool:
     return text.strip() in NONE or _pint(text) is not None
 
 
+def _counting(quantity, other):
+    """The same unit in turns, if `other` is and it has no angle at all, or without them: 1/s is Hz, rad/s is not."""
+    turn, angle = _registry().turn, re.compile("turn|radian|degree")
+    if "turn" in str(other) and not angle.search(str(quantity)):
+        return quantity * turn
+    if "turn" in str(quantity) and not angle.search(str(other)):
+        return quantity / turn
+    return quantity
+
+
 @cache
 def _registry():
     import pint  # slow to load
@@ -100,6 +110,7 @@ def _pint(unit: str):
     parts, end, divides = [], 0, [False]  # whether a / was met, by depth of the brackets
     for token in _TOKEN.finditer(text):
         symbol, exponent, number, operator = token.groups()
+        symbol = SPELLINGS.get(symbol, symbol)
         if token.start() != end or (symbol and symbol not in SYMBOLS):
             return None
         end = token.end()

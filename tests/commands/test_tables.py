@@ -117,6 +117,8 @@ def test_a_missing_column_tells_which_there_are(tmp_path):
         *[("g/N", "1/kg", 9.80665), ("(m/s2)/N", "1/kg", 1.0), ("(mm/s)/N", "m/(N.s)", 1e-3), ("N s/m", "N.s/m", 1.0)],
         *[("deg", "rad", math.pi / 180), ("°", "rad", math.pi / 180), ("mrad", "rad", 1e-3)],
         *[("kHz", "Hz", 1e3), ("rpm", "Hz", 1 / 60), ("rad/s", "Hz", 1 / (2 * math.pi)), ("1/s", "Hz", 1.0)],
+        *[("s^-1", "Hz", 1.0), ("1/min", "Hz", 1 / 60), ("Hz", "1/s", 1.0), ("kHz", "1/s", 1e3), ("rad/s", "1/s", 1.0)],
+        *[("rpm", "rad/s", math.pi / 30), ("m/s**2", "m/s2", 1.0), ("RPM", "Hz", 1 / 60), ("rad/sec", "rad/s", 1.0)],
         *[("N·m", "N.m", 1.0), ("N m", "N.m", 1.0), ("kg", "kg", 1.0), ("1", "1", 1.0)],
     ],
 )

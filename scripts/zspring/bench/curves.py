@@ -37,6 +37,7 @@ class Source:
     amplitude: float | None = None  # m/s2, peak
     force: str = "specimen"  # positive along the displacement, or "contact": positive pressing the head down
     fixture_mass: float = 0.0  # kg, of what moves between load cell and head
+    data_sets: tuple[int, ...] = ()  # of a universal file, those to read, from 1; empty: those of its driving point
 
     def corrected(self, curve: Curve) -> Curve:
         """With this sign of the force, and without the inertia of the fixture: F_head = F_cell - m a."""

@@ -31,7 +31,9 @@ ALIASES = {"h re": "real", "h im": "imaginary", "imag": "imaginary"}
 def read_curves(source: Source) -> list[Curve]:
     """All curves of a file, CSV or UFF data set 58 by its suffix. Raises ZSpringError, see the readers."""
     if source.path.suffix.lower() in (".uff", ".unv", ".uf"):
-        curves = read_uff(source.path, source.amplitude)
+        curves = read_uff(source.path, source.amplitude, source.data_sets)
+    elif source.data_sets:
+        raise ZSpringError(f"{source.path}: data_sets are for universal files (.uff, .unv)")
     else:
         curves = read_csv(source.path, source.amplitude)
     return [source.corrected(curve) for curve in curves]

@@ -11,6 +11,7 @@ from ..fmu import CATENARY, installed_fmu
 from ..options import (
     FILE,
     POSITIVE,
+    WholeNumbers,
     choice,
     copy_examples,
     jobs_option,
@@ -88,6 +89,13 @@ class Spans(click.ParamType):
     default="specimen",
     help="Measured force positive along the displacement, or pressing the head down.",
 )
+@option(
+    "--frf-data-sets",
+    default=(),
+    kind=WholeNumbers(),
+    metavar="LIST",
+    help="Of a universal file, where nodes and directions do not tell the driving point.",
+)
 @option("--frf-amplitude", kind=POSITIVE, metavar="A", help="Peak acceleration in m/s2, if --frf does not tell.")
 @option(
     "--fixture-mass",
@@ -144,7 +152,9 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, speed, jobs
         from ..bench.curves import Source
         from .own_data import OwnData, report_on
 
-        source = frf and Source(frf, given["frf_amplitude"], given["frf_force"], given["fixture_mass"])
+        source = frf and Source(
+            frf, given["frf_amplitude"], given["frf_force"], given["fixture_mass"], given["frf_data_sets"]
+        )
         place = (given[name] for name in ("spans", "span", "first_support", "number"))
         data = OwnData(series, line_test, editions[0], given["case_title"], speed and speed / 3.6, *place)
         bands, direction = given["frf_bands"], given["direction"]

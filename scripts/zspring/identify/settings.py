@@ -7,14 +7,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, Strict, model_validator
 
 from ..bench.curves import Source
 from ..bench.measure import BENCH_PARAMETERS
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..parameter_sets import PANTOGRAPHS, find_set, read_set
-from ..settings import ALL_FREQUENCIES, Band, BesidePath, Positive, Table, by_full_name, set_name, settings_of
+from ..settings import ALL_FREQUENCIES, Band, BesidePath, Positive, Table, by_full_name, fitting, set_name, settings_of
 from ..variables import Value, Variables, parse
 
 LINEAR_PARAMETERS = ("m1", "m2", "m3", "c1", "c2", "c3", "k1", "k2", "k3")
@@ -95,6 +95,11 @@ class Tie(Table):
         return content if isinstance(content, Mapping) else {"to": content}
 
 
+DataSets = Annotated[
+    tuple[Annotated[int, Field(ge=1)], ...], Strict(False), fitting("must be numbers of data sets, from 1")
+]
+
+
 class Measurement(Table):
     """A file of measured responses and what it does not tell, see Source."""
 
@@ -102,6 +107,7 @@ class Measurement(Table):
     amplitude: Positive | None = Field(None, description="m/s2, peak")
     force: Literal["specimen", "contact"] = "specimen"
     fixture_mass: float = Field(0.0, ge=0, description="kg, of what moves between load cell and head")
+    data_sets: DataSets = ()
 
 
 class Settings(Table):
