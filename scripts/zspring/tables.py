@@ -1,9 +1,9 @@
 """Tables in text files: one reader for those of users and our own, one writer.
 
-A file begins with lines of comment (#), ours with "# key: value". Then come a line of column names, NAME [UNIT] or
-NAME (UNIT), and the rows. Cells are separated by commas, semicolons or tabs; where it is not commas, numbers may have
-a decimal comma. Capitals, underscores and blanks in names count for nothing. Text is UTF-8, UTF-16 with its mark, or
-Windows-1252.
+A file begins with lines of comment (#), ours with "# key: value". Then come a line of column names, NAME [UNIT],
+NAME (UNIT) or, as MATLAB writes that, NAME_UNIT_, and the rows. Cells are separated by commas, semicolons or tabs;
+where it is not commas, numbers may have a decimal comma. Capitals, underscores and blanks in names count for nothing.
+Text is UTF-8, UTF-16 with its mark, or Windows-1252.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from .units import conversion, is_unit
 
 _DECIMAL = re.compile(r"[-+]?\d*([.,])\d+(?:[eE][-+]?\d+)?|[-+]?\d+([.,])")
 _IN_BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\((.*)\))")
+_IN_UNDERSCORES = re.compile(r"(.*?)_([^\W_]+)_")
 _CONTROL = re.compile(r"[\0-\x08\x0e-\x1f]")
 
 
@@ -36,6 +37,8 @@ def split_label(label: str) -> tuple[str, str | None]:
     found = _IN_BRACKETS.fullmatch(label.strip())
     if found and (found[3] is None or is_unit(found[3])):
         return found[1], found[2] if found[3] is None else found[3]
+    if (found := _IN_UNDERSCORES.fullmatch(label.strip())) and is_unit(found[2]):
+        return found[1], found[2]
     return label.strip(), None
 
 

@@ -129,6 +129,19 @@ def test_a_series_of_times_alone_is_placed_by_its_speed(tmp_path):
     assert "101.4" in page  # target mean force at that speed
 
 
+def test_the_spans_of_our_own_runs_are_those_of_their_line(tmp_path):
+    """A line of 40 m spans: the figures over spans 2 and 3 are those of 40 to 120 m in the file itself."""
+    settings = ["--set-line", "line.span=40", "--set-line", "dropper.count=0", "--set-line", "line.spans=4"]
+    zspring(tmp_path, "couple", *settings, "--output", "run")
+    out, _ = zspring(tmp_path, "en50318", "--series", "run/line.csv", "--spans", "2:3", "--output", "own")
+    rows = table(tmp_path / "run/line.csv")
+    force = np.array([float(row["contact force 1 [N]"]) for row in rows])
+    position = np.array([float(row["position 1 [m]"]) for row in rows])
+    inside = (position >= 40) & (position < 120)
+    assert "spans 2 to 3, 40 to 120 m" in out
+    assert float(figures(out)["mean force, N"]) == pytest.approx(force[inside].mean(), abs=0.5)
+
+
 def test_an_interrupted_validation_goes_on_with_what_is_missing(tmp_path):
     path = edition(tmp_path, 200, 230, 260, 290)
     arguments = ["en50318", "--edition", str(path), "--output", "out", "--jobs", "1"]
@@ -207,9 +220,19 @@ def test_the_empty_edition_is_written_once(tmp_path):
     [
         (["--series", "none.csv"], "none.csv: No such file"),
         (["--series", "short.csv"], "too short for 20 Hz"),
-        (["--series", "long.csv", "--spans", "5:6"], "the series has 0 to 100 m"),
+        (["--series", "long.csv", "--spans", "5:6", "--span", "60"], "the series has 0 to 100 m"),
         (["--series", "long.csv", "--spans", "6:5"], "'6:5': must be N or FIRST:LAST"),
         (["--series", "long.csv", "--case", "260 km/h"], "260 km/h: no case of EN 50318:2002; did you mean"),
+        (["--series", "long.csv", "--spans", "1"], "--spans: needs the length of a span"),
+        (["--series", "long.csv", "--case", "250 km/h"], "speed: 180 km/h by long.csv, but 250 km/h by the case 250"),
+        (["--series", "of-55-m.csv", "--spans", "1", "--span", "50"], "span: 50 m by --span, but 55 m by of-55-m.csv"),
+        (["--series", "of-55-m.csv", "--line-test", "of-60-m.csv"], "span: 55 m by of-55-m.csv, but 60 m by of-60-m"),
+        (["--series", "of-55-m.csv", "--spans", "10:12"], "spans 10 to 12: of-55-m.csv says that there are 11"),
+        (
+            ["--series", "long.csv", "--line-test", "pulled.csv"],
+            "pulled.csv: mean contact force = -100 N: must be above",
+        ),
+        (["--series", "of-55-m.csv", "--spans", "1", "--first-support", "9"], "first support: 9 m by --first-support"),
         (["--spans", "5:6"], "--spans is for --series"),
         (["--parameters", "dsa-380"], "--parameters is for --frf"),
         (["--edition", "line.toml"], "no such file, and no set of that name"),
@@ -222,6 +245,11 @@ def test_bad_input_is_refused_in_one_line_and_nothing_is_written(arguments, mess
     columns = "time [s],position [m],contact_force [N]"
     np.savetxt(tmp_path / "long.csv", data, delimiter=",", header=columns, comments="")
     np.savetxt(tmp_path / "short.csv", data[:100], delimiter=",", header=columns, comments="")
+    for span in 55, 60:
+        says = f"# span: {span} m\n# spans: 11\n# first support: 0 m\n"
+        (tmp_path / f"of-{span}-m.csv").write_text(says + (tmp_path / "long.csv").read_text())
+    data[:, 2] *= -1
+    np.savetxt(tmp_path / "pulled.csv", data, delimiter=",", header=columns, comments="")
     text = edition(tmp_path, 200).read_text(encoding="utf-8")
     (tmp_path / "line.toml").write_text(text.replace("short.ssv", "mine.ssv"), encoding="utf-8")
     (tmp_path / "spans.toml").write_text(text.replace("last_span = 3", "last_span = 4"), encoding="utf-8")

@@ -10,6 +10,8 @@ import pytest
 from zspring.errors import ZSpringError
 from zspring.line.result import LineResult, write_result
 from zspring.line.series import Series, read_series
+from zspring.line.stated import Stated
+from zspring.line.statistics import Section, statistics
 
 TIME = np.arange(1001) * 0.002
 FORCE = 100 + 20 * np.sin(2 * np.pi * TIME)
@@ -100,6 +102,69 @@ def changed(values: np.ndarray, at: int, value: float) -> np.ndarray:
     return result
 
 
+@pytest.mark.parametrize(
+    "columns",
+    [
+        {"time_s_": TIME, "contact_force_N_": FORCE, "position_m_": POSITION},
+        {"Time (ms)": 1e3 * TIME, "contact.force [N]": FORCE, "position [m]": POSITION},
+        {"time [s]": [f"{1700000000 + t:.3f}" for t in TIME], "contact_force [N]": FORCE, "position [m]": POSITION},
+    ],
+)
+def test_tables_as_other_tools_write_them(columns, tmp_path):
+    """MATLAB's names, those of `zspring simulate`, seconds since 1970: figures as of the plain table."""
+    plain = write(tmp_path / "a.csv", {"time [s]": TIME, "contact force [N]": FORCE, "position [m]": POSITION})
+    section = Section(2, 2, 50.0)
+    expected, found = (statistics(read_series(path), section) for path in (plain, write(tmp_path / "b.csv", columns)))
+    assert found == pytest.approx(expected, rel=1e-6, nan_ok=True)
+
+
+def test_a_turned_force_is_the_force(tmp_path):
+    path = write(tmp_path / "a.csv", {"time [s]": TIME, "contact_force [N]": -FORCE})
+    assert read_series(path, turned=True).force == pytest.approx(FORCE)
+
+
+def headed(path: Path, *lines: str, position: bool = True) -> Path:
+    """A file with these lines at its head."""
+    own = {"position [m]": POSITION} if position else {}
+    write(path, {"time [s]": TIME, "contact_force [N]": FORCE, **own})
+    path.write_text("".join(f"# {line}\n" for line in lines) + path.read_text(encoding="utf-8"), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("lines", "stated"),
+    [
+        ([], Stated()),
+        (["span: 0.055 km", "first support: -10 m", "speed: 60 m/s"], Stated(55, None, -10, 60)),
+        (["catenary line.span: 55 m", "catenary line.spans: 10", "speed: 216 km/h"], Stated(55, 10, 0, 60)),
+        (["speed: as the timetable has it"], Stated()),
+    ],
+)
+def test_the_head_says_where_and_how_fast(lines, stated, tmp_path):
+    found = read_series(headed(tmp_path / "a.csv", *lines)).stated
+    assert (found.spans, found.span, found.first_support, found.speed) == pytest.approx(
+        (stated.spans, stated.span, stated.first_support, stated.speed)
+    )
+
+
+def test_a_speed_of_the_head_places_the_series_and_must_be_that_of_all_others(tmp_path):
+    path = headed(tmp_path / "a.csv", "speed: 216 km/h", position=False)
+    assert read_series(path).position == pytest.approx(60 * TIME)
+    assert read_series(path, speed=60.5).speed == pytest.approx(216)  # within 2 %
+    with pytest.raises(ZSpringError, match=r"speed: 216 km/h by the head of the file, but 252 km/h by --speed"):
+        read_series(path, speed=70.0)
+    with pytest.raises(ZSpringError, match=r"speed: 200 km/h by the head of the file, but 216 km/h by its times"):
+        read_series(headed(path, "speed: 200 km/h"))
+
+
+@pytest.mark.parametrize(
+    ("line", "told"), [("span: 55", r"# span: unit \[\]"), ("speed: 60 m", r"# speed: unit \[m\]")]
+)
+def test_a_number_in_the_head_needs_its_unit(line, told, tmp_path):
+    with pytest.raises(ZSpringError, match=told):
+        read_series(headed(tmp_path / "a.csv", line))
+
+
 UNEVEN = np.concatenate([TIME[:500], TIME[500] + 0.003 * np.arange(501)])
 GAP = np.where(TIME >= 1.0, TIME + 0.5, TIME)
 
@@ -124,6 +189,27 @@ GAP = np.where(TIME >= 1.0, TIME + 0.5, TIME)
         ({"time [s]": TIME, "contact_force [N]": ["x"] * 1001}, "line 3: contact_force = 'x': must be a finite"),
         ({"time [s]": TIME, "contact_force [N]": FORCE, "position [m]": POSITION[::-1]}, "position decreases"),
         ({"time [s]": [], "contact_force [N]": []}, "no row of values"),
+        ({"time [s]": TIME, "contact_force [N]": -FORCE}, "mean contact force = -100 N: must be above 0.*--turn-force"),
+        ({"time [s]": TIME, "contact_force [N]": 0 * FORCE}, "mean contact force = 0 N: must be above 0"),
+        ({"time [s]": TIME, "contact_force [N]": [*["100"] * 9, "-9999", *["100"] * 991]}, "line 12: .* no value"),
+        ({"time [s]": TIME, "contact_force [N]": [*["100"] * 9, "999.90", *["100"] * 991]}, "line 12: .* no value"),
+        ({"time [s]": TIME, "contact_force [N]": changed(FORCE, 9, -32768)}, "line 12: contact force = -32768 N: must"),
+        (
+            {"time [s]": TIME, "contact_force [kN]": changed(FORCE, 9, 6)},
+            "line 3: contact force = 100000 N: must be in",
+        ),
+        (
+            {"time [s]": TIME, "contact_force [N]": FORCE, "wire height [m]": changed(5.3 + 0 * TIME, 9, 0)},
+            "line 12: wire height = 0 m: must be in 3.3 .. 7.3 m",
+        ),
+        (
+            {"time [s]": TIME, "contact_force [N]": FORCE, "support uplift at 60 m [mm]": changed(TIME, 9, -9999)},
+            r"line 12: support uplift at 60 m = -9999.0: is a sign for no value",
+        ),
+        (
+            {"time [s]": TIME, "contact_force [N]": FORCE, "support uplift [m]": TIME - 3},
+            "line 3: support uplift = -3 m",
+        ),
     ],
 )
 def test_bad_files_are_refused_in_one_line(columns, message, tmp_path):

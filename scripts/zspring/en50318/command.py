@@ -65,8 +65,14 @@ class Spans(click.ParamType):
 @option("--case", "case_title", kind=str, metavar="TITLE", help="Compare --series with the ranges of this case.")
 @option("--speed", kind=POSITIVE, metavar="V", help="Of series without times or positions, in km/h.")
 @option("--spans", kind=Spans(), metavar="FIRST:LAST", help="Spans to evaluate.  [default: of the case, or all]")
-@option("--span", default=60.0, kind=POSITIVE, metavar="L", help="Length of a span in m.")
-@option("--first-support", default=0.0, metavar="X", help="Where span 1 begins, m.")
+@option("--span", kind=POSITIVE, metavar="L", help="Length of a span in m.  [default: of the file's head or the case]")
+@option("--first-support", metavar="X", help="Where span 1 begins, m.  [default: of the file's head, or 0]")
+@click.option(
+    "--turn-force",
+    type=click.Choice(["series", "line-test"]),
+    multiple=True,
+    help="In this file forces that press the head down are negative: take them with the other sign.",
+)
 @option(
     "--pantograph",
     "number",
@@ -108,7 +114,7 @@ class Spans(click.ParamType):
 @pantograph_options
 @output_option("results/en50318")
 @line_fmu_option
-def en50318(pantograph, edition_path, quick, series, line_test, frf, speed, jobs, output, **given) -> None:
+def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, output, **given) -> None:
     """Validate the simulation as EN 50318 does, and write a report.
 
     Without options: the reference case of EN 50318:2002 with its accepted ranges, what free choices do to it, the
@@ -127,9 +133,9 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, speed, jobs
     for name, chosen in ("--parameters", pantograph.parameter_set), ("--set", pantograph.assignments):
         if chosen and not frf:
             raise click.UsageError(f"{name} is for --frf")
-    for name, chosen in ("--case", given["case_title"]), ("--spans", given["spans"]), ("--speed", speed):
-        if chosen and not (series or line_test):
-            raise click.UsageError(f"{name} is for --series and --line-test")
+    for name in "case_title", "speed", "spans", "span", "first_support", "turn_force":
+        if given[name] not in (None, ()) and not (series or line_test):
+            raise click.UsageError(f"--{name.removesuffix('_title').replace('_', '-')} is for --series and --line-test")
     from .edition import packaged_edition, read_edition  # matplotlib and scipy are slow to load
 
     paths = [edition_path] if edition_path else [packaged_edition(name) for name in EDITIONS]
@@ -155,7 +161,8 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, speed, jobs
         source = frf and Source(
             frf, given["frf_amplitude"], given["frf_force"], given["fixture_mass"], given["frf_data_sets"]
         )
-        place = (given[name] for name in ("spans", "span", "first_support", "number"))
-        data = OwnData(series, line_test, editions[0], given["case_title"], speed and speed / 3.6, *place)
+        place = (given[name] for name in ("spans", "span", "first_support", "number", "turn_force"))
+        speed = given["speed"] and given["speed"] / 3.6
+        data = OwnData(series, line_test, editions[0], given["case_title"], speed, *place)
         bands, direction = given["frf_bands"], given["direction"]
         report_on(data, source, parameters, bands, direction, fmu, catenary, output, jobs)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..bench.curves import Source
+from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..heads import synthetic_note
 from ..interrupt import Interrupted, stop_on_interrupt
-from ..line.series import Series, read_series
+from ..line.series import Series, read_series, require_pressing
+from ..line.stated import SAME_SPEED, agreed
 from ..line.statistics import FIGURES, Section, Statistics, statistics
 from ..parameter_sets import LINES, find_set, read_set
 from ..tables import write_table
@@ -34,15 +36,47 @@ class OwnData:
     case_title: str | None  # of the case whose spans and ranges are meant
     speed: float | None  # m/s
     spans: tuple[int, int] | None
-    span: float  # m
-    first_support: float  # m, where span 1 begins
+    span: float | None  # m
+    first_support: float | None  # m, where span 1 begins
     pantograph: int
+    turned: Sequence[str] = ()  # of "series" and "line-test", those whose forces have the other sign
 
-    def section(self, case: Case | None, catenary: Fmu) -> Section | None:
-        """The spans to evaluate: those asked for, else those of the case; None: the whole series."""
-        if self.spans:
-            return Section(*self.spans, self.span, self.first_support)
-        return section_of(case, catenary, read_set(find_set(case.line, LINES), catenary)) if case else None
+    def read(self) -> dict[str, Series]:
+        """The series by the title of their chapters. Raises ZSpringError as read_series does."""
+        first = "Simulation" if self.line_test else "Contact force"
+        files = (first, self.series, "series"), ("Line test", self.line_test, "line-test")
+        return {
+            title: read_series(path, self.speed, self.pantograph, name in self.turned)
+            for title, path, name in files
+            if path
+        }
+
+    def section(self, case: Case | None, catenary: Fmu, series: Collection[Series]) -> Section | None:
+        """The spans to evaluate: those asked for, else those of the case; None: the whole series.
+
+        Raises ZSpringError where options, the case and the heads of the files do not agree on speed or line, and
+        where nobody says how long a span is.
+        """
+        heads = {one.name: one.stated for one in series}
+        speeds = {one.name: one.speed for one in series}
+        lengths = {"--span": self.span, **{name: head.span for name, head in heads.items()}}
+        of_case = None
+        if case:
+            of_case = section_of(case, catenary, read_set(find_set(case.line, LINES), catenary))
+            speeds[f"the case {case.title}"] = case.speed
+            lengths[f"the case {case.title}"] = of_case.span
+        agreed("speed", "km/h", speeds, SAME_SPEED)
+        span = agreed("span", "m", lengths)
+        begins = {"--first-support": self.first_support, **{n: head.first_support for n, head in heads.items()}}
+        begin = agreed("first support", "m", begins) or 0.0
+        if not self.spans:
+            return replace(of_case, start=begin) if of_case else None
+        if span is None:
+            raise ZSpringError("--spans: needs the length of a span, --span L; no file says it in its head")
+        for name, head in heads.items():
+            if head.spans and self.spans[1] > head.spans:
+                raise ZSpringError(f"spans {self.spans[0]} to {self.spans[1]}: {name} says that there are {head.spans}")
+        return Section(*self.spans, span, begin)
 
 
 def report_on(
@@ -61,19 +95,18 @@ def report_on(
     parameters, edges, direction    of the FRF, see compare_frf
     """
     case = data.edition.case(data.case_title) if data.case_title else None
-    section = data.section(case, catenary)
+    given = data.read()
+    section = data.section(case, catenary, given.values())
     made, files, lines, found, settings = [], [], [], {}, {}
-    first = "Simulation" if data.line_test else "Contact force"
-    for title, path in (first, data.series), ("Line test", data.line_test):
-        if path:
-            series = read_series(path, data.speed, data.pantograph)
-            found[title] = statistics(series, section)
-            made.append(series_chapter(series, section, case, title))
-            settings[title] = str(path)
+    for title, series in given.items():
+        found[title] = statistics(series, section)
+        require_pressing(f"{series.name}, {section}" if section else series.name, found[title]["mean_force"])
+        made.append(series_chapter(series, section, case, title))
+        settings[title] = series.name
     if found:
         lines += report.as_lines(figures_table(found, str(section or "the whole series")))
     if len(found) == 2:
-        made.append(agreement_chapter(found[first], found["Line test"], data.edition))
+        made.append(agreement_chapter(found["Simulation"], found["Line test"], data.edition))
     if source:
         folder.mkdir(parents=True, exist_ok=True)
         chapter, written = frf_chapter(pantograph, source, parameters, edges, direction, folder, jobs)
