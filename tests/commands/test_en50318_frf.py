@@ -57,6 +57,16 @@ def test_errors_are_those_that_were_put_in():
             assert found == pytest.approx(5 * sign)
 
 
+@pytest.mark.parametrize("turned", [-1.0, 1.0])
+def test_angles_are_averaged_on_the_circle(turned):
+    """A force of the wrong sign is 180 deg off, whatever side of it the scatter falls."""
+    H = 1e-4 / (1 + 0.1j * FREQUENCY)
+    scatter = np.where(np.arange(H.size) % 2, 1, -1) * np.radians(5) + turned * np.radians(1)
+    curve = Curve("1 m/s2", FREQUENCY, np.ones_like(FREQUENCY), H)
+    (error,) = band_errors(curve, -H * np.exp(1j * scatter), (0.5, 20.0))
+    assert abs(error.phase_mean) == pytest.approx(179, abs=0.2) and error.phase_rms > 170
+
+
 def test_points_that_failed_count_in_no_band():
     H = np.full(FREQUENCY.shape, 1e-4 + 0j)
     computed = np.where(FREQUENCY < 5, np.nan, 2 * H)
@@ -67,7 +77,7 @@ def test_points_that_failed_count_in_no_band():
 def test_the_linear_fmu_agrees_with_linear_algebra_at_every_amplitude(pantograph, tmp_path):
     """Within what HHT-alpha shifts frequencies at the step that comparisons take."""
     path = write_measured(tmp_path / "measured.csv", linear_receptance(pantograph))
-    found = compare_frf(pantograph, Source(path), {"suspension": 2}, EDGES, "up", 2, threading.Event())
+    found = compare_frf(pantograph, Source(path), {"suspension": 2}, EDGES, "up", 2, threading.Event()).levels
     assert [each.measured.label for each in found] == ["1 m/s2", "4 m/s2"]
     for each in found:
         for error in each.errors:
@@ -79,7 +89,7 @@ def test_a_wrong_model_shows_in_the_band_where_it_is_wrong(pantograph, tmp_path)
     path = write_measured(tmp_path / "measured.csv", linear_receptance(pantograph), (1.0,))
     edges = (0.5, 2.0, 5.0, 8.0, 20.0)
     heavy = {"suspension": 2, "m1": 1.1 * 7.12}
-    (found,) = compare_frf(pantograph, Source(path), heavy, edges, "up", 1, threading.Event())
+    (found,) = compare_frf(pantograph, Source(path), heavy, edges, "up", 1, threading.Event()).levels
     by_band = {error.band: error for error in found.errors}
     ratio = linear_receptance(pantograph, m1=1.1 * 7.12) / linear_receptance(pantograph)
     for low, high in itertools.pairwise(edges):
@@ -101,3 +111,34 @@ def test_bad_requests_are_refused(pantograph, tmp_path):
         compare_frf(pantograph, Source(path), {}, (30.0, 40.0), "up", 1, stop)
     with pytest.raises(ZSpringError, match="m1"):
         compare_frf(pantograph, Source(path), {"m1": -1.0}, EDGES, "up", 1, stop)
+
+
+def with_head(path: Path, head: str) -> Path:
+    path.write_text(head + path.read_text(encoding="utf-8"), encoding="utf-8")
+    return path
+
+
+def test_the_bench_s_static_force_and_friction_are_those_of_the_head(pantograph, tmp_path):
+    """With free rods at 70 N, as the head says, the response is that of the Z-spring linearised there."""
+    H = receptance(FREQUENCY, pantograph.used_parameters({"static_force": 70.0, "suspension": 4}), "free")
+    path = write_measured(tmp_path / "measured.csv", H, (1e-3,))
+    head = "# static_force: 0.07 kN\n# friction: free\n# direction: down\n"
+    stop = threading.Event()
+    plain = compare_frf(pantograph, Source(path), {"suspension": 4}, EDGES, None, 1, stop)
+    assert plain.direction == "file" and "does not say static_force and friction" in plain.remarks[0]
+    assert max(error.magnitude_rms for error in plain.levels[0].errors) > 0.05
+    told = compare_frf(pantograph, Source(with_head(path, head)), {"suspension": 4}, EDGES, None, 1, stop)
+    assert (told.direction, told.remarks) == ("down", [])
+    assert told.parameters["static_force"] == pytest.approx(70) and told.parameters["friction"] == 4
+    assert max(error.magnitude_rms for error in told.levels[0].errors) < 0.01
+    with pytest.raises(ZSpringError, match=r"static_force: .*measured.csv says 70 N, the settings 120 N: one of them"):
+        compare_frf(pantograph, Source(path), {"static_force": 120.0}, EDGES, None, 1, stop)
+    with pytest.raises(ZSpringError, match=r"direction: .*measured.csv says down, the settings up"):
+        compare_frf(pantograph, Source(path), {}, EDGES, "up", 1, stop)
+
+
+def test_a_force_of_the_wrong_sign_is_said(pantograph, tmp_path):
+    path = write_measured(tmp_path / "measured.csv", -linear_receptance(pantograph), (1.0,))
+    found = compare_frf(pantograph, Source(path), {"suspension": 2}, EDGES, None, 1, threading.Event())
+    assert "positive imaginary part" in found.remarks[1] and "contact force" in found.remarks[1]
+    assert all(abs(error.phase_mean) > 170 for error in found.levels[0].errors)

@@ -26,7 +26,7 @@ from zspring.identify.report import doubts
 from zspring.identify.search import cost_record, search
 from zspring.identify.settings import Free, Search, Settings, read_settings
 from zspring.interrupt import Interrupted
-from zspring.parameter_sets import read_set
+from zspring.parameter_sets import describe_set, read_set
 
 AMPLITUDES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 NAMES = ("m1", "m2", "m3", "c1", "c2", "c3", "k1", "k2", "k3")
@@ -40,8 +40,17 @@ def noisy(values: np.ndarray, level: float, seed: int) -> np.ndarray:
     return values * (1 + level * (parts[0] + 1j * parts[1]) / np.sqrt(2))
 
 
-def write_measurement(path: Path, points: dict[tuple[float, float], complex]) -> None:
-    lines = ["frequency [Hz],amplitude [m/s2],real [m/N],imaginary [m/N]"]
+BENCH_FORCE = 110.0  # N, other than the pantograph's own 120 N
+
+
+def write_measurement(
+    path: Path,
+    points: dict[tuple[float, float], complex],
+    static_force: float = BENCH_FORCE,
+    friction: str = "Regularized",
+) -> None:
+    lines = [f"# static_force: {static_force} N", f"# friction: {friction}"]
+    lines += ["frequency [Hz],amplitude [m/s2],real [m/N],imaginary [m/N]"]
     lines += [f"{f},{a},{H.real},{H.imag}" for (a, f), H in sorted(points.items())]
     path.write_text("\n".join(lines) + "\n")
 
@@ -194,7 +203,8 @@ def measurement(tmp_path_factory) -> dict[tuple[float, float], complex]:
     folder = tmp_path_factory.mktemp("measurement")
     frequencies = "0.5:20:0.75"
     step = ["--set", f"solver.step={STEP}"]
-    zspring(folder, "frf", "--frequencies", frequencies, *step, "--tolerance", "1e-4", "--output", "out")
+    settings = [*step, "--set", f"static_force={BENCH_FORCE}", "--tolerance", "1e-4"]
+    zspring(folder, "frf", "--frequencies", frequencies, *settings, "--output", "out")
     return receptances(folder / "out/frf.csv")
 
 
@@ -229,7 +239,10 @@ def test_the_z_spring_comes_back_from_noisy_measurements(fmu, measurement, tmp_p
     assert len(rows) == len(measurement)
     row = rows[40]
     options = ["--amplitudes", row["amplitude [m/s2]"], "--frequencies", row["frequency [Hz]"]]
-    zspring(tmp_path, "frf", "--parameters", str(path), *options, "--tolerance", "1e-4", "--output", "again")
+    assert "static_force" not in found and "static force of 110 N" in describe_set(path)[0]
+    assert f"as on the bench: --parameters {Path('out/fitted.ssv')} --set static_force=110" in out
+    options += ["--set", f"static_force={BENCH_FORCE}", "--set", f"solver.step={STEP}", "--tolerance", "1e-4"]
+    zspring(tmp_path, "frf", "--parameters", str(path), *options, "--output", "again")
     (H,) = receptances(tmp_path / "again/frf.csv").values()
     fitted = complex(float(row["fitted_re [m/N]"]), float(row["fitted_im [m/N]"]))
     assert H == pytest.approx(fitted, rel=5e-3)
@@ -328,12 +341,12 @@ def test_a_candidate_that_cannot_be_simulated_costs_a_penalty_and_no_more(fmu):
 def test_a_parameter_without_any_effect_is_named(fmu, tmp_path, measurement):
     """tau means nothing to Coulomb's law."""
     few = {k: H for k, H in measurement.items() if k[0] in (1.0, 4.0) and k[1] < 8}
-    write_measurement(tmp_path / "bench.csv", few)
+    write_measurement(tmp_path / "bench.csv", few, friction="Coulomb")
     free = """
 zspring.Mf = { start = 0.4, min = 0.1, max = 1 }
 zspring.tau = { start = 900, min = 100, max = 5000 }
 """
-    extra = 'fixed = { friction = "Coulomb" }\nsearch = { generations = 0 }'
+    extra = "search = { generations = 0 }"
     out, found = zspring_fit(tmp_path, free, extra)
     assert "the data do not determine zspring.tau" in out
     assert "zspring.Mf:" not in out and found["zspring.Mf"] == pytest.approx(fmu.start("zspring.Mf"), rel=0.02)
@@ -384,7 +397,9 @@ def test_a_static_test_alone_with_one_response_determines_the_friction(fmu, meas
     displacement = static_loop(0.01)
     with Fmu() as model, model.instances() as (instance,):
         test = StaticTest(displacement, np.zeros(displacement.shape), np.full(displacement.shape, 0.05))
-        force = test.simulated(instance, {"solver.step": STEP}) + 3.0  # the load cell's zero
+        force = (
+            test.simulated(instance, {"solver.step": STEP, "static_force": BENCH_FORCE}) + 3.0
+        )  # the load cell's zero
     noise = np.random.default_rng(5).standard_normal(force.shape)
     lines = ["time [s],displacement [mm],force [N]"]
     lines += [
@@ -400,11 +415,10 @@ def test_a_static_test_alone_with_one_response_determines_the_friction(fmu, meas
 
 
 def test_start_values_that_the_fmu_refuses_are_told_at_once(measurement, tmp_path):
-    write_measurement(tmp_path / "bench.csv", measurement)
+    write_measurement(tmp_path / "bench.csv", measurement, static_force=0)
     text = 'model = "zspring"\n[[measurement]]\nfile = "bench.csv"\n[free]\n'
     (tmp_path / "fit.toml").write_text(text + "zspring.l0 = { start = 0.09, min = 0.01, max = 0.1 }\n")
-    unloaded = ["--set", "gravity=0", "--set", "static_force=0"]
-    _, err = zspring(tmp_path, "identify", "fit.toml", *unloaded, status=1)
+    _, err = zspring(tmp_path, "identify", "fit.toml", "--set", "gravity=0", status=1)
     assert len(err.splitlines()) == 1 and "tension" in err
 
 

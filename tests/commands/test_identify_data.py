@@ -141,7 +141,6 @@ GOOD = "frequency [Hz],amplitude [m/s2],real [m/N],imaginary [m/N]\n1,0.5,1e-3,-
         (GOOD.replace("amplitude", "level"), "no column 'amplitude', and none given"),
         (GOOD.replace("frequency", "f"), "no column 'frequency'"),
         (GOOD.replace("imaginary", "im"), "no column 'imaginary'"),
-        (GOOD.replace("\n2,", "\n1,"), "line 3: frequency = 1 Hz after 1 Hz: must increase"),
         (GOOD.replace("\n1,", "\n-1,"), "line 2: frequency = -1: must be positive"),
         (GOOD.replace("2e-3", "nan"), "line 3: real = 'nan': must be a finite number"),
         (GOOD.replace("2,0.5", "2,"), "line 3: amplitude = '': must be a finite number"),
@@ -240,11 +239,19 @@ zspring.J2 = { to = "zspring.J1", factor = 2 }
 [fixed]
 m1 = 7.5
 """
+HEAD = "# static_force: 120 N\n# friction: Coulomb\n"
+
+
+def settings_file(folder: Path, text: str, head: str = HEAD) -> Path:
+    """Beside the measurement that they name."""
+    (folder / "bench.csv").write_text(head + GOOD)
+    path = folder / "fit.toml"
+    path.write_text(text)
+    return path
 
 
 def test_settings_give_the_parameters_of_every_x(tmp_path):
-    path = tmp_path / "fit.toml"
-    path.write_text(SETTINGS)
+    path = settings_file(tmp_path, SETTINGS)
     with Fmu() as model:
         settings = read_settings(path, model, "dsa-380-zspring", ("friction=Coulomb",))
         inertia = float(model.variables["zspring.J1"].start)
@@ -302,8 +309,77 @@ def test_settings_give_the_parameters_of_every_x(tmp_path):
     ],
 )
 def test_bad_settings_are_refused_with_file_and_key(tmp_path, old, new, complaint):
-    path = tmp_path / "fit.toml"
-    path.write_text(SETTINGS.replace(old, new, 1))
+    path = settings_file(tmp_path, SETTINGS.replace(old, new, 1))
     with Fmu() as model, pytest.raises(ZSpringError, match=f"fit.toml: .*{complaint}") as error:
         read_settings(path, model)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "head, fixed, found",
+    [
+        (HEAD, "", (120, 2, "file")),
+        ("# Static force: 0.11 kN\n# friction: regularized\n# direction: down\n", "", (110, 1, "down")),
+        ("", 'static_force = 70\nfriction = "Coulomb"', (70, 2, "file")),
+        ("# static_force: 70\n", 'static_force = 70.0\nfriction = "Free"', (70, 4, "file")),
+    ],
+)
+def test_static_force_and_friction_are_the_bench_s_and_not_the_set_s(tmp_path, head, fixed, found):
+    """The set says 120 N and Regularized."""
+    path = settings_file(tmp_path, f'parameters = "dsa-380-zspring"\n{SETTINGS}{fixed}\n', head)
+    with Fmu() as model:
+        settings = read_settings(path, model)
+    assert (settings.fixed["static_force"], settings.fixed["friction"], settings.direction) == found
+
+
+@pytest.mark.parametrize(
+    "head, fixed, complaint",
+    [
+        (
+            "",
+            "",
+            "static_force of the bench is not known: neither does the head of bench.csv say '# static_force: 110 N'",
+        ),
+        ("# static_force: 120 N\n", "", "friction of the bench is not known: .*'# friction: Coulomb'"),
+        (HEAD, "static_force = 119", "static_force: .*bench.csv says 120 N, the settings 119 N"),
+        (HEAD, 'friction = "Regularized"', "friction: .*bench.csv says Coulomb, the settings Regularized"),
+        ("# static_force: 120 kg\n", "", r"bench.csv: static_force = 120 kg: unit \[kg\]: must be one of N"),
+        ("# static_force: much\n", "", "bench.csv: static_force = 'much': must be a number"),
+        (HEAD + "# direction: sideways\n", "", "bench.csv: direction = 'sideways': must be one of up, down, rest"),
+    ],
+)
+def test_a_bench_that_nobody_knows_or_two_know_otherwise_is_refused(tmp_path, head, fixed, complaint):
+    path = settings_file(tmp_path, f"{SETTINGS}{fixed}\n", head)
+    with Fmu() as model, pytest.raises(ZSpringError, match=complaint) as error:
+        read_settings(path, model)
+    assert "\n" not in str(error.value)
+
+
+def test_two_files_of_one_fit_agree(tmp_path):
+    path = settings_file(tmp_path, SETTINGS.replace("[free]", '[[measurement]]\nfile = "b.csv"\n[free]', 1))
+    (tmp_path / "b.csv").write_text("# static_force: 70 N\n" + GOOD)
+    with Fmu() as model, pytest.raises(ZSpringError, match=r"b.csv: static_force = 70 N: .*bench.csv says another"):
+        read_settings(path, model)
+
+
+def test_the_direction_may_come_from_the_settings(tmp_path):
+    for head, complaint in ((HEAD, None), (HEAD + "# direction: up\n", "says up, the settings down")):
+        path = settings_file(tmp_path, f'direction = "down"\n{SETTINGS}', head)
+        with Fmu() as model:
+            if complaint:
+                with pytest.raises(ZSpringError, match=complaint):
+                    read_settings(path, model)
+            else:
+                assert read_settings(path, model).direction == "down"
+
+
+def test_a_static_test_may_have_a_contact_force_and_a_wrong_sign_is_said(tmp_path):
+    """The suspension pushes back against the way it is moved: the force on the head rises with it."""
+    columns, z = "displacement [mm],force [N]", [0.0, 5.0, 10.0, 5.0]
+    right = static_file(tmp_path / "a.csv", columns, z, [-120, -90, -60, -100])
+    assert read_static_test(right, 0.005).sign_warning is None
+    pressing = static_file(tmp_path / "b.csv", columns, z, [120, 90, 60, 100])
+    assert "contact force" in read_static_test(pressing, 0.005).sign_warning
+    turned = read_static_test(pressing, 0.005, "contact")
+    np.testing.assert_array_equal(turned.force, [-120, -90, -60, -100])
+    assert turned.sign_warning is None

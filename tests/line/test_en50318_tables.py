@@ -11,7 +11,7 @@ import pytest
 from zspring.bench.curves import Curve
 from zspring.en50318 import report
 from zspring.en50318.edition import judge, packaged_edition, read_edition
-from zspring.en50318.frf import FrfComparison, band_errors
+from zspring.en50318.frf import LevelComparison, band_errors
 from zspring.en50318.own_data import OwnData, agreement_chapter, figures_table, series_chapter
 from zspring.en50318.page import BAD, GOOD, Cell, Table
 from zspring.line.series import Series
@@ -221,7 +221,7 @@ def test_errors_of_a_response_are_in_percent_and_degrees_with_their_signs():
     frequency, H = np.array([1.0, 2.0, 5.0, 20.0]), np.full(4, 1e-4 - 1e-5j)
     off = np.array([1.03, 0.96, 1.10, 0.95]) * np.exp(1j * np.radians([1, -2, 5, 0]))
     curve = Curve("1 m/s2", frequency, np.ones(4), H)
-    comparison = FrfComparison(curve, H * off, band_errors(curve, H * off, (1.0, 5.0, 20.0)))
+    comparison = LevelComparison(curve, H * off, band_errors(curve, H * off, (1.0, 5.0, 20.0)))
     low, high = (texts(row) for row in report.frf_table([comparison]).cells)
     assert low == ["1 m/s2", "1 to 5 Hz", "2", "-0.5 %", "-4.0 %", "3.5 %", "-0.5 deg", "-2.0 deg", "1.6 deg"]
     assert high == ["1 m/s2", "5 to 20 Hz", "2", "+2.5 %", "+10.0 %", "7.9 %", "+2.5 deg", "+5.0 deg", "3.5 deg"]

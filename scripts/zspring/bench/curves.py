@@ -1,4 +1,4 @@
-"""Measured frequency responses, one curve for each amplitude, whatever file they come from."""
+"""Measured frequency responses, one curve for each level of the amplitude, whatever file they come from."""
 
 from __future__ import annotations
 
@@ -10,19 +10,35 @@ import numpy as np
 
 from ..errors import ZSpringError
 
+SENSES = {"specimen": 1, "contact": -1}  # a force along the displacement; one that presses the head down
+WRONG_SIGN = 'is it counted as contact force (force = "contact")?'
+
 
 @dataclass(frozen=True)
 class Curve:
-    """Receptance measured with one amplitude."""
+    """Receptance measured at one level of the amplitude, in the order of the file."""
 
-    label: str  # of the amplitude, with its unit
-    frequency: np.ndarray  # (n,) Hz, increasing
-    acceleration: np.ndarray  # (n,) m/s2, peak
+    label: str  # of the level, with its unit
+    frequency: np.ndarray  # (n,) Hz
+    acceleration: np.ndarray  # (n,) m/s2, peak, of each point its own
     H: np.ndarray  # (n,) m/N, complex
 
     def within(self, band: tuple[float, float]) -> Curve:
         """The points with frequencies in the band (Hz)."""
         return self.at((self.frequency >= band[0]) & (self.frequency <= band[1]))
+
+    def refined(self, parts: int) -> Curve:
+        """With so many parts between two points, amplitudes in between (H is not known there: NaN).
+
+        As it is where the frequencies do not all rise or all fall.
+        """
+        steps = np.diff(self.frequency)
+        if not (np.all(steps > 0) or np.all(steps < 0)):
+            return self
+        places, known = np.arange((self.frequency.size - 1) * parts + 1) / parts, np.arange(self.frequency.size)
+        acceleration = np.exp(np.interp(places, known, np.log(self.acceleration)))
+        unknown = np.full(places.shape, np.nan + 0j)
+        return replace(self, frequency=np.interp(places, known, self.frequency), acceleration=acceleration, H=unknown)
 
     def at(self, points: np.ndarray) -> Curve:
         """Only some points, by index or by mask."""
@@ -35,13 +51,13 @@ class Source:
 
     path: Path
     amplitude: float | None = None  # m/s2, peak
-    force: str = "specimen"  # positive along the displacement, or "contact": positive pressing the head down
+    force: str = "specimen"  # of SENSES
     fixture_mass: float = 0.0  # kg, of what moves between load cell and head
     data_sets: tuple[int, ...] = ()  # of a universal file, those to read, from 1; empty: those of its driving point
 
     def corrected(self, curve: Curve) -> Curve:
         """With this sign of the force, and without the inertia of the fixture: F_head = F_cell - m a."""
-        H = -curve.H if self.force == "contact" else curve.H
+        H = SENSES[self.force] * curve.H
         stiffness = 1 / H + self.fixture_mass * (2 * np.pi * curve.frequency) ** 2
         return replace(curve, H=1 / stiffness)
 
@@ -51,7 +67,7 @@ def in_band(curves: Sequence[Curve], band: tuple[float, float]) -> list[Curve]:
     kept = [curve.within(band) for curve in curves]
     for before, after in zip(curves, kept):
         if not after.frequency.size:
-            low, high = before.frequency[[0, -1]]
+            low, high = before.frequency.min(), before.frequency.max()
             raise ZSpringError(
                 f"band {band[0]:g} to {band[1]:g} Hz: no data with {before.label}, which was measured from "
                 f"{low:g} to {high:g} Hz"
@@ -67,5 +83,5 @@ def sign_warning(curves: Sequence[Curve]) -> str | None:
         return None
     return (
         f"at {wrong} of {imaginary.size} points the receptance has a positive imaginary part, as if the head "
-        'gave energy out: is the force counted as contact force (force = "contact"), or the phase reversed?'
+        f"gave energy out: is the phase of the force reversed, or {WRONG_SIGN}"
     )

@@ -1,15 +1,16 @@
-"""Measured frequency responses from files: one curve for each amplitude.
+"""Measured frequency responses from files: one curve for each level of the amplitude.
 
 The file is a table as `tables.py` reads it, with the columns, in any order:
 
-    frequency [Hz]      increasing within each amplitude
-    amplitude [UNIT]    peak of the imposed sine; the unit tells whether displacement, velocity or
-                        acceleration; may be missing where the settings give it
+    frequency [Hz]      in the order in which the points were measured, if that matters
+    amplitude [UNIT]    peak of the imposed sine, nominal or as it was reached; the unit tells whether
+                        displacement, velocity or acceleration; may be missing where the settings give it
+    level               of the amplitude, a number or a name; may be missing, see `levels`
     real [UNIT], imaginary [UNIT], or magnitude [UNIT], phase [deg or rad]
                         the unit tells the kind of response, see `responses`
 
 Other columns are not read. The file that `zspring frf` writes has this form (its H_re and H_im are read);
-points that it marks as left out or failed are passed over.
+points that it marks as left out or failed are passed over. What its head says of the bench, `conditions` reads.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ import numpy as np
 from ..errors import ZSpringError
 from ..tables import read_table
 from ..units import UnitError
+from .conditions import is_universal
 from .curves import Curve, Source
+from .levels import levels_of, named_levels
 from .responses import acceleration_of, response_of
 from .uff import read_uff
 
@@ -30,7 +33,7 @@ ALIASES = {"h re": "real", "h im": "imaginary", "imag": "imaginary"}
 
 def read_curves(source: Source) -> list[Curve]:
     """All curves of a file, CSV or UFF data set 58 by its suffix. Raises ZSpringError, see the readers."""
-    if source.path.suffix.lower() in (".uff", ".unv", ".uf"):
+    if is_universal(source.path):
         curves = read_uff(source.path, source.amplitude, source.data_sets)
     elif source.data_sets:
         raise ZSpringError(f"{source.path}: data_sets are for universal files (.uff, .unv)")
@@ -42,8 +45,8 @@ def read_curves(source: Source) -> list[Curve]:
 def read_csv(path: Path, amplitude: float | None) -> list[Curve]:
     """The curves of a CSV file as described above; `amplitude` in m/s2 where the file has none.
 
-    Raises ZSpringError with file, line and column for a missing column or unit, a value that is no finite
-    number or not positive where it must be, and frequencies that do not increase.
+    Raises ZSpringError with file, line and column for a missing column or unit, and a value that is no finite
+    number or not positive where it must be.
     """
     table = read_table(path, ALIASES)
     if "status" in table:
@@ -78,15 +81,8 @@ def read_csv(path: Path, amplitude: float | None) -> list[Curve]:
     except UnitError as error:
         raise ZSpringError(f"{path}, column 'amplitude': {error}") from None
 
-    curves = []
-    for step in dict.fromkeys(steps.tolist()):
-        points = np.flatnonzero(steps == step)
-        late = np.flatnonzero(np.diff(frequency[points]) <= 0)
-        if late.size:
-            before, after = points[late[0]], points[late[0] + 1]
-            raise ZSpringError(
-                f"{path}, line {table.lines[after]}: frequency = {frequency[after]:g} Hz after "
-                f"{frequency[before]:g} Hz: must increase within one amplitude"
-            )
-        curves.append(Curve(f"{step:g} {step_unit}", frequency[points], acceleration[points], H[points]))
-    return curves
+    if "level" in table:
+        levels = named_levels(table["level"].cells)
+    else:
+        levels = levels_of(frequency, acceleration, steps, step_unit)
+    return [Curve(level.label, *(x[level.points] for x in (frequency, acceleration, H))) for level in levels]

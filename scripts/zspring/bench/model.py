@@ -13,6 +13,7 @@ import numpy as np
 
 from ..fmu import FmuError, Instance
 from ..variables import Value
+from .conditions import FILE_ORDER
 from .curves import Curve
 from .fmu_bench import FmuBench
 from .measure import FAILED, FrfSettings, settle
@@ -27,7 +28,8 @@ SETTLED = FrfSettings(tolerance=2e-4)
 class BenchModel:
     """Measures candidates, each curve on an instance of its own, as many at a time as there are instances.
 
-    direction   "up", "down", or "rest": each point from the static state
+    direction   "file": the points of a curve as they stand, "up" or "down" by frequency, or "rest": each from
+                the static state
     Once `stop` is set, nothing is measured any more and all answers are NaN.
     """
 
@@ -76,11 +78,13 @@ class BenchModel:
         self, parameters: Mapping[str, Value], curve: Curve, periods: Periods | None
     ) -> tuple[np.ndarray, Periods]:
         H, used = np.full(curve.frequency.shape, math.nan + 0j), [0] * curve.frequency.size
-        order = range(len(used))[:: -1 if self._direction == "down" else 1]
+        order = np.argsort(curve.frequency, kind="stable")[:: -1 if self._direction == "down" else 1]
+        if self._direction == FILE_ORDER:
+            order = np.arange(len(used))
         instance = self._idle.get()
         try:
             bench, is_running = FmuBench(instance, parameters), False
-            for i in order:
+            for i in order.tolist():
                 frequency, acceleration = float(curve.frequency[i]), float(curve.acceleration[i])
                 (bench.tune if is_running else bench.start)(frequency, acceleration)
                 settings = SETTLED

@@ -4,7 +4,8 @@ A table as `tables.py` reads it, with the columns
 
     displacement [m]        of the head against the blocked frame, upward, from the static state
     force [N]               on the head, positive upward as the displacement (a load cell in compression under
-                            the contact strip counts negative)
+                            the contact strip counts negative); a contact force, positive where it presses the
+                            head down, is turned as that of a frequency response is
     time [s]                may be missing: then the head moves with the speed of the settings
 
 in the order in which they were measured; the path begins in the static state at displacement 0. Means of both
@@ -23,6 +24,7 @@ from ..errors import ZSpringError
 from ..fmu import Instance
 from ..tables import read_table
 from ..variables import Value
+from .curves import SENSES, WRONG_SIGN
 
 BLOCKED_FRAME = {"k2": 1e9, "k3": 1e9}  # N/m, so stiff that the frame moves less than a micrometre
 # From point to point. The FMU rounds a turn of the head over a few communication steps, so that the inertia
@@ -38,6 +40,13 @@ class StaticTest:
     force: np.ndarray  # (n,) N, upward on the head
     duration: np.ndarray  # (n,) s, of the way to each point from the one before, first from displacement 0
 
+    @property
+    def sign_warning(self) -> str | None:
+        """What to say if the head gives way the wrong way, which no stable suspension does."""
+        if np.sum((self.displacement - self.displacement.mean()) * (self.force - self.force.mean())) >= 0:
+            return None
+        return f"static test: the force falls while the head is lifted, as if the head pulled along: {WRONG_SIGN}"
+
     def simulated(self, instance: Instance, parameters: Mapping[str, Value]) -> np.ndarray:
         """Force (n,) in N, upward on the head, that the FMU has on the same path."""
         drive = instance.variables.parse_assignments(["drive=Displacement"])
@@ -52,14 +61,16 @@ class StaticTest:
         return -np.array(forces)
 
 
-def read_static_test(path: Path, speed: float) -> StaticTest:
+def read_static_test(path: Path, speed: float, force_sense: str = "specimen") -> StaticTest:
     """The test of a file as described above; `speed` in m/s where it has no time.
+
+    force_sense     "specimen": positive along the displacement, "contact": positive pressing the head down
 
     Raises ZSpringError, with file, line and column, for missing columns or units, values that are not finite
     and time that does not increase.
     """
     table = read_table(path)
-    displacement, force = table.numbers("displacement", "m"), table.numbers("force", "N")
+    displacement, force = table.numbers("displacement", "m"), SENSES[force_sense] * table.numbers("force", "N")
     if displacement.size < 3:
         raise ZSpringError(f"{path}: needs at least three rows")
     distance = np.abs(np.diff(displacement, prepend=0.0))

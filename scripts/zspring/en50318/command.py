@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from ..bench.conditions import DIRECTIONS
 from ..fmu import CATENARY, installed_fmu
 from ..options import (
     FILE,
@@ -110,7 +111,11 @@ class Spans(click.ParamType):
     metavar="M",
     help="What moves between load cell and head in the measured FRF, in kg.",
 )
-@choice("--direction", of=["up", "down", "rest"], default="up", help="Of the sweep in the measured FRF.")
+@choice(
+    "--direction",
+    of=DIRECTIONS,
+    help="Of the sweep in the measured FRF.  [default: as the head of the file says, else in its order]",
+)
 @pantograph_options
 @output_option("results/en50318")
 @line_fmu_option

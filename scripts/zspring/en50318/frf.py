@@ -1,4 +1,4 @@
-"""Validation of a pantograph's model by its frequency response: measured against computed, by amplitude."""
+"""Validation of a pantograph's model by its frequency response: measured against computed, by level of amplitude."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..bench.curves import Curve, Source, in_band
+from ..bench.conditions import STATED, read_conditions
+from ..bench.curves import Curve, Source, in_band, sign_warning
 from ..bench.measured import read_curves
 from ..bench.model import BenchModel
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..variables import Value
+from ..variables import Value, with_unit
 
 ACCURATE_STEP = 5e-4  # s; at 2 ms the solver itself is off by 0.8 % in frequency at 20 Hz
 
@@ -34,12 +35,22 @@ class BandError:
 
 
 @dataclass(frozen=True)
-class FrfComparison:
-    """One amplitude: what was measured, what the FMU has there (n,), and the errors by band."""
+class LevelComparison:
+    """One level: what was measured, what the FMU has there (n,), and the errors by band."""
 
     measured: Curve
     computed: np.ndarray  # m/N, NaN where it failed
     errors: list[BandError]
+
+
+@dataclass(frozen=True)
+class FrfComparison:
+    """All levels, and under what they were computed."""
+
+    levels: list[LevelComparison]
+    parameters: Mapping[str, Value]  # given ones, with those of the bench that the file states
+    direction: str
+    remarks: list[str]  # what makes the comparison less than it seems
 
 
 def compare_frf(
@@ -47,31 +58,41 @@ def compare_frf(
     source: Source,
     parameters: Mapping[str, Value],
     edges: Sequence[float],
-    direction: str,
+    direction: str | None,
     jobs: int,
     stop: threading.Event,
-) -> list[FrfComparison]:
+) -> FrfComparison:
     """Measure the FMU on its bench at the points of the file, and compare.
 
     edges       Hz, of the bands; what was measured beyond them is left out
-    direction   of the sweep: "up", "down", or "rest" (each point from the static state)
-    Raises ZSpringError for a bad file or parameter, and where no point could be computed.
+    direction   of the sweep: "up", "down", or "rest" (each point from the static state); None: as the file has it
+    Raises ZSpringError for a bad file or parameter, for one that contradicts the file, and where no point could be
+    computed.
     """
     if len(edges) < 2:
         raise ZSpringError("frequency bands: need at least two edges, e.g. 0.5,5,20")
     curves = in_band(read_curves(source), (edges[0], edges[-1]))
-    given = {"solver.step": ACCURATE_STEP, **parameters}
+    conditions = read_conditions([source.path], fmu)
+    given = {"solver.step": ACCURATE_STEP, **conditions.agreed(fmu, parameters)}
+    swept = conditions.swept(direction)
+    unknown = [name for name in STATED if name not in conditions.parameters]
+    used = fmu.used_parameters(given)
+    assumed = ", ".join(f"{name} {with_unit(fmu.variables[name], used[name])}" for name in unknown)
+    remarks = [f"{source.path.name} does not say {' and '.join(unknown)} of the bench: {assumed} assumed"] * bool(
+        unknown
+    )
+    remarks += [warning] if (warning := sign_warning(curves)) else []
     with fmu.instances(min(jobs, len(curves))) as instances:
-        model = BenchModel(instances, direction, stop)
+        model = BenchModel(instances, swept, stop)
         try:
             model.check(given)
             (found,) = model.receptances([given], curves)
         finally:
             model.close()
-    comparisons = [FrfComparison(c, H, band_errors(c, H, edges)) for c, (H, _) in zip(curves, found)]
-    if not stop.is_set() and not any(np.isfinite(c.computed).any() for c in comparisons):
+    levels = [LevelComparison(c, H, band_errors(c, H, edges)) for c, (H, _) in zip(curves, found)]
+    if not stop.is_set() and not any(np.isfinite(c.computed).any() for c in levels):
         raise ZSpringError(f"{source.path}: no point could be computed with these parameters")
-    return comparisons
+    return FrfComparison(levels, given, swept, remarks)
 
 
 def band_errors(measured: Curve, computed: np.ndarray, edges: Sequence[float]) -> list[BandError]:
@@ -86,10 +107,15 @@ def band_errors(measured: Curve, computed: np.ndarray, edges: Sequence[float]) -
         inside &= np.isfinite(ratio)
         if inside.any():
             magnitude, phase = np.abs(ratio[inside]) - 1, np.degrees(np.angle(ratio[inside]))
-            errors.append(BandError((low, high), int(inside.sum()), *_summary(magnitude), *_summary(phase)))
+            # Of angles the mean is that of their directions: -179 and 179 deg are 180 deg off, not 0.
+            turned = np.degrees(np.angle(np.mean(np.exp(1j * np.radians(phase)))))
+            of_magnitude = float(magnitude.mean()), *_rms_and_largest(magnitude)
+            errors.append(
+                BandError((low, high), int(inside.sum()), *of_magnitude, float(turned), *_rms_and_largest(phase))
+            )
     return errors
 
 
-def _summary(values: np.ndarray) -> tuple[float, float, float]:
-    """Mean, root mean square, and the value farthest from 0."""
-    return float(values.mean()), float(np.sqrt(np.mean(values**2))), float(values[np.argmax(np.abs(values))])
+def _rms_and_largest(values: np.ndarray) -> tuple[float, float]:
+    """Root mean square, and the value farthest from 0."""
+    return float(np.sqrt(np.mean(values**2))), float(values[np.argmax(np.abs(values))])

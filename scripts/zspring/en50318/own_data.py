@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..bench.conditions import FILE_ORDER, STATED
 from ..bench.curves import Source
 from ..errors import ZSpringError
 from ..fmu import Fmu
@@ -17,10 +19,10 @@ from ..line.stated import SAME_SPEED, agreed
 from ..line.statistics import FIGURES, Section, Statistics, statistics
 from ..parameter_sets import LINES, find_set, read_set
 from ..tables import write_table
-from ..variables import Value
+from ..variables import Value, with_unit
 from . import about, plot, report
 from .edition import Case, Edition, agreement, judge
-from .frf import FrfComparison, compare_frf
+from .frf import LevelComparison, compare_frf
 from .page import Chapter, Picture, Table
 from .plan import section_of, slug
 from .run import finish
@@ -84,7 +86,7 @@ def report_on(
     source: Source | None,
     parameters: Mapping[str, Value],
     edges: Sequence[float],
-    direction: str,
+    direction: str | None,
     pantograph: Fmu,
     catenary: Fmu,
     folder: Path,
@@ -157,29 +159,37 @@ def frf_chapter(
     source: Source,
     parameters: Mapping[str, Value],
     edges: Sequence[float],
-    direction: str,
+    direction: str | None,
     folder: Path,
     jobs: int,
 ) -> tuple[Chapter, list[Path]]:
     """The FMU's frequency response beside a measured one; the files written. Raises Interrupted after Ctrl-C."""
     with stop_on_interrupt() as stop:
-        comparisons = compare_frf(fmu, source, parameters, edges, direction, jobs, stop)
+        comparison = compare_frf(fmu, source, parameters, edges, direction, jobs, stop)
         if stop.is_set():
             raise Interrupted("interrupted: the frequency response is not complete, nothing is written")
     path = folder / "frf-comparison.csv"
+    comparisons, used = comparison.levels, fmu.used_parameters(comparison.parameters)
     _write_frf(path, fmu, source, comparisons)
-    note = synthetic_note(fmu, fmu.used_parameters(parameters))
+    for remark in comparison.remarks:
+        print(remark, file=sys.stderr)
+    note = synthetic_note(fmu, used)
     title = f"{source.path.name} and {fmu.description.modelName}{note}"
+    course = "in the order of the file" if comparison.direction == FILE_ORDER else comparison.direction
+    bench = ", ".join(f"{name} {with_unit(fmu.variables[name], used[name])}" for name in STATED)
     text = (
         f"Measured: {source.path}, force counted as that on the {source.force}. Computed: the FMU on its own "
-        f"bench, stepped sine at the same frequencies and amplitudes, sweep {direction}. Errors are relative to "
+        f"bench, stepped sine at the same frequencies and amplitudes, sweep {course}, {bench}. Errors are relative to "
         "the measured value; a positive phase error means that the computed response is ahead."
     )
     failed = sum(int((c.computed != c.computed).sum()) for c in comparisons)
     missing = [f"{failed} points could not be computed."] if failed else []
     picture = Picture(plot.frf_comparison_figure(comparisons, edges, title), title, "frf-comparison.png")
     table = report.frf_table(comparisons)
-    return Chapter("Pantograph: measured and computed FRF", [text, *missing, table, picture]), [path]
+    return Chapter(
+        "Pantograph: measured and computed FRF",
+        [text, *missing, *(f"{r}." for r in comparison.remarks), table, picture],
+    ), [path]
 
 
 def figures_table(found: Mapping[str, Statistics], caption: str) -> Table:
@@ -188,7 +198,7 @@ def figures_table(found: Mapping[str, Statistics], caption: str) -> Table:
     return Table(caption, ["", *found], rows)
 
 
-def _write_frf(path: Path, fmu: Fmu, source: Source, comparisons: Sequence[FrfComparison]) -> None:
+def _write_frf(path: Path, fmu: Fmu, source: Source, comparisons: Sequence[LevelComparison]) -> None:
     columns = ["amplitude", "frequency [Hz]", "amplitude [m/s2]"]
     columns += [f"{kind}_{part} [m/N]" for kind in ("measured", "computed") for part in ("re", "im")]
     rows = [

@@ -15,7 +15,7 @@ from ..line.result import SLIPPING, LineResult
 from ..line.series import Series
 from ..line.statistics import FIGURES, Section, Statistics, low_pass
 from .edition import Judgement
-from .frf import FrfComparison
+from .frf import LevelComparison
 
 COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:purple")
 STYLES = ("-", "-", ":", "--")
@@ -161,7 +161,7 @@ def heads_force_figure(results: Mapping[str, LineResult], section: Section, titl
     return figure
 
 
-def frf_comparison_figure(comparisons: Sequence[FrfComparison], edges: Sequence[float], title: str) -> Figure:
+def frf_comparison_figure(comparisons: Sequence[LevelComparison], edges: Sequence[float], title: str) -> Figure:
     """Magnitude and phase of the receptance: measured points and computed lines, by amplitude."""
     figure = new_figure(10, 6.5)
     magnitude, phase = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])

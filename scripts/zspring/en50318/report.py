@@ -13,7 +13,7 @@ from ..parameter_sets import describe_set
 from ..text_tables import aligned
 from ..variables import text
 from .edition import DEVIATION_SHARE, Case, Judgement, sets_of
-from .frf import FrfComparison
+from .frf import LevelComparison
 from .page import BAD, GOOD, WORDS, Cell, Table
 from .plan import Run
 
@@ -107,7 +107,7 @@ def agreement_table(simulated: Statistics, measured: Statistics, judgements: Seq
     return Table("Simulation and line test", header, rows)
 
 
-def frf_table(comparisons: Sequence[FrfComparison]) -> Table:
+def frf_table(comparisons: Sequence[LevelComparison]) -> Table:
     """Errors by amplitude and band."""
     rows = [
         [

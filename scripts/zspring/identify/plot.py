@@ -13,29 +13,30 @@ from ..bench.curves import Curve
 from ..bench.responses import phase_degrees
 from ..bench.static_test import StaticTest
 from ..figures import new_figure
-from .report import magnitude_error
+from .report import magnitude_error, phase_error
 
 
-def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], title: str) -> Figure:
-    """Magnitude, phase and error of the magnitude over frequency, one colour for each amplitude.
+def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], drawn: Sequence[Curve], title: str) -> Figure:
+    """Magnitude, phase and error of the magnitude over frequency, one colour for each level of the amplitude.
 
-    fitted      receptances (n,) in m/N of each curve
+    fitted      receptances (n,) in m/N at the points of each curve
+    drawn       the fitted model at and between them
     """
     figure = new_figure(8.5, 9)
     magnitude, phase, error = figure.subplots(3, 1, sharex=True, height_ratios=[2, 1, 1])
     colors = matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(curves)))
-    for curve, H, color in zip(curves, fitted, colors):
+    for curve, H, line, color in zip(curves, fitted, drawn, colors):
         points = {"color": color, "linestyle": "none", "marker": "o", "fillstyle": "none", "markersize": 3}
-        line = {"color": color, "linewidth": 1.2}
-        magnitude.semilogy(curve.frequency, np.abs(curve.H), **points)
-        magnitude.semilogy(curve.frequency, np.abs(H), label=curve.label.replace("s2", "s²"), **line)
-        phase.plot(curve.frequency, phase_degrees(curve.H, "receptance"), **points)
-        phase.plot(curve.frequency, phase_degrees(H, "receptance"), **line)
-        error.plot(
-            curve.frequency, 100 * magnitude_error(curve, H), marker=".", markersize=3, color=color, linewidth=0.6
-        )
+        points |= {"elinewidth": 0.7, "capsize": 1.5}
+        size, angle = magnitude_error(curve, H), phase_error(curve, H)
+        scatter, turn = (np.sqrt(np.nanmean(each**2)) for each in (size, angle))
+        magnitude.errorbar(curve.frequency, np.abs(curve.H), scatter * np.abs(curve.H), **points)
+        magnitude.semilogy(line.frequency, np.abs(line.H), label=curve.label.replace("s2", "s²"), color=color)
+        phase.errorbar(curve.frequency, phase_degrees(curve.H, "receptance"), turn, **points)
+        phase.plot(line.frequency, phase_degrees(line.H, "receptance"), color=color)
+        error.plot(curve.frequency, 100 * size, marker=".", markersize=3, color=color, linewidth=0.6)
     handles = [
-        Line2D([], [], color="gray", linestyle="none", marker="o", fillstyle="none", label="measured"),
+        Line2D([], [], color="gray", linestyle="none", marker="o", fillstyle="none", label="measured ± rms error"),
         Line2D([], [], color="gray", label="fitted"),
         *magnitude.get_legend_handles_labels()[0],
     ]
@@ -43,6 +44,8 @@ def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], title: str
     magnitude.set(title=title, ylabel="|H|, receptance  [m/N]")
     phase.set(ylabel="phase  [deg]")
     error.set(xlabel="frequency  [Hz]", ylabel="fitted / measured - 1  [%]")
+    frequencies = np.concatenate([curve.frequency for curve in curves])
+    error.set_xlim(frequencies.min(), frequencies.max())
     for axes in (magnitude, phase, error):
         axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
     return figure

@@ -5,13 +5,16 @@ from __future__ import annotations
 import hashlib
 import sys
 import time
+from collections.abc import Mapping
+from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
 
 import numpy as np
 from tqdm import tqdm
 
-from ..bench.curves import in_band, sign_warning
+from ..bench.conditions import FILE_ORDER
+from ..bench.curves import Curve, in_band, sign_warning
 from ..bench.measure import FrfSettings
 from ..bench.measured import read_curves
 from ..bench.model import BenchModel
@@ -24,7 +27,7 @@ from ..interrupt import Interrupted, stop_on_interrupt
 from ..parameter_sets import write_set
 from ..records import Record
 from ..tables import write_table
-from ..variables import Value, parse
+from ..variables import Value, parse, with_unit
 from . import report
 from .fit import Fit, fit
 from .plot import fit_figure, static_figure
@@ -33,7 +36,8 @@ from .search import Cost, cost_record, search
 from .settings import LINEAR_PARAMETERS, Settings
 
 # Of the bench, the line and the solver, so not of a pantograph.
-OTHER_PARAMETERS = ("drive", "bench.", "contact.", "solver.")
+OTHER_PARAMETERS = ("drive", "bench.", "static_force", "contact.", "solver.")
+FINE = 5  # parts between two points of a drawn curve
 
 
 def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str, jobs: int) -> None:
@@ -50,17 +54,20 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
     if settings.model == "linear":
         curves = [curve for curve in curves if curve.label == curves[0].label]
     curves = in_band(curves, settings.band)
-    if warning := sign_warning(curves):
-        print(warning, file=sys.stderr)
     count = 2 * sum(curve.frequency.size for curve in curves)
     if count <= len(settings.free):
         raise ZSpringError(f"{count} measured numbers cannot determine {len(settings.free)} parameters")
-    static = read_static_test(settings.static.path, settings.static.speed) if settings.static else None
+    static = None
+    if settings.static:
+        static = read_static_test(settings.static.path, settings.static.speed, settings.static.force)
+    for warning in sign_warning(curves), static and static.sign_warning:
+        if warning:
+            print(warning, file=sys.stderr)
     defaults = {v.name: parse(v, v.start) for v in fmu.variables if v.causality == "parameter"}
 
     folder.mkdir(parents=True, exist_ok=True)
     with stop_on_interrupt() as stop, _Log(folder / "identify.log") as log, fmu.instances(jobs) as instances:
-        bench = BenchModel(instances, settings.direction, stop)
+        bench = BenchModel(instances, settings.direction or FILE_ORDER, stop)
         try:
             if settings.model == "linear":
                 model: Model = ThreeMassModel(curves, defaults)
@@ -74,6 +81,7 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
             if settings.search.generations:
                 x, record = _search(fmu, problem, folder, stop, log)
             result = _fit(problem, x, "least squares", stop, log)
+            drawn = _drawn(problem, model, result, stop)
             if settings.search.generations:
                 record.path.unlink()
         finally:
@@ -93,8 +101,14 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
         _write_set(fmu, problem, result, defaults, folder / "fitted.ssv"),
         _write_points(fmu, problem, result, folder / "fit.csv"),
     ]
+    if settings.model == "zspring":
+        force = with_unit(fmu.variables["static_force"], settings.parameters(result.x)["static_force"])
+        print(
+            f"identified at the bench's static force, {force}, which is not in fitted.ssv: the line has its own; "
+            f"as on the bench: --parameters {paths[0]} --set static_force={force.split()[0]}"
+        )
     title = f"Identified from {', '.join(source.path.name for source in settings.sources)}"
-    figures = {"fit": fit_figure(curves, result.answer.curves, f"{title}: {settings.model} model")}
+    figures = {"fit": fit_figure(curves, result.answer.curves, drawn, f"{title}: {settings.model} model")}
     if static and result.answer.static is not None:
         figures["static"] = static_figure(static, result.answer.static, f"{title}: static test")
     for name, figure in figures.items():
@@ -160,6 +174,15 @@ def _fit(problem: Problem, x: np.ndarray, name: str, stop, log: _Log) -> Fit:
         return result
 
 
+def _drawn(problem: Problem, model: Model, result: Fit, stop) -> list[Curve]:
+    """What the fitted model has at and between the points. Raises Interrupted after Ctrl-C."""
+    fine = [curve.refined(FINE) for curve in problem.curves]
+    (answer,) = model.with_curves(fine).answers([problem.settings.parameters(result.x)])
+    if stop.is_set():
+        raise Interrupted("interrupted; the same command goes on after the global search")
+    return [replace(curve, H=H) for curve, H in zip(fine, answer.curves)]
+
+
 def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Value], path: Path) -> Path:
     settings = problem.settings
     values = {**defaults, **settings.parameters(result.x)}
@@ -176,9 +199,17 @@ def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Valu
     remarks |= {name: f"tied to {tie.to}" for name, tie in settings.tied.items()}
     files = ", ".join(source.path.name for source in settings.sources)
     date = datetime.now(timezone.utc).strftime("%Y-%m-%d")
-    description = f"Identified from {files} on {date}, {settings.model} model; see {path.parent.name}/identify.log"
+    description = f"Identified from {files} on {date}, {settings.model} model{_preload(fmu, values, settings)}"
+    description += f"; see {path.parent.name}/identify.log"
     write_set(path, fmu, {name: values[name] for name in names}, path.stem, description, remarks)
     return path
+
+
+def _preload(fmu: Fmu, values: Mapping[str, Value], settings: Settings) -> str:
+    """The bench's static force, which the set leaves to the line; the linear model depends on none."""
+    if settings.model == "linear":
+        return ""
+    return f", at a static force of {with_unit(fmu.variables['static_force'], values['static_force'])}"
 
 
 def _write_points(fmu: Fmu, problem: Problem, result: Fit, path: Path) -> Path:
