@@ -16,7 +16,7 @@ import click
 
 from .errors import ZSpringError
 from .fmu import Fmu
-from .parameter_sets import PANTOGRAPHS, find_set, read_set
+from .parameter_sets import ACCURATE_STEP, PANTOGRAPHS, find_set, read_set
 from .variables import Value
 
 MOST_NUMBERS = 100_000
@@ -90,7 +90,8 @@ set_option = click.option(
     multiple=True,
     metavar="NAME=VALUE",
     help="Set a parameter of the FMU, in its unit or by the name of an enumeration's item; repeatable. "
-    "`zspring info` lists them.",
+    f"`zspring info` lists them. solver.step is {1e3 * ACCURATE_STEP:g} ms where it is not set; the FMU alone starts "
+    "with 2 ms.",
 )
 parameters_option = option(
     "--parameters",
@@ -112,10 +113,17 @@ class Pantograph:
     assignments: Sequence[str]
 
     @contextmanager
-    def opened(self, but_not: Sequence[str] = ()) -> Iterator[tuple[Fmu, dict[str, Value]]]:
-        """The FMU and the parameters; `but_not` as in chosen_parameters."""
+    def opened(
+        self, but_not: Sequence[str] = (), step: float = ACCURATE_STEP
+    ) -> Iterator[tuple[Fmu, dict[str, Value]]]:
+        """The FMU and the parameters.
+
+        but_not     as in chosen_parameters
+        step        s, solver.step where neither set nor assignment has one; not with solver.step in `but_not`
+        """
         with opened(self.fmu_path) as fmu:
-            yield fmu, chosen_parameters(fmu, self.parameter_set, self.assignments, but_not)
+            chosen = chosen_parameters(fmu, self.parameter_set, self.assignments, but_not)
+            yield fmu, chosen if "solver.step" in but_not else {"solver.step": step, **chosen}
 
 
 def pantograph_options(command: Callable) -> Callable:

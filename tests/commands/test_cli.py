@@ -15,7 +15,7 @@ from commands import PNG, head, receptances, start, table, zspring
 from harness import bench_point
 from linear import PUBLISHED, LinearPantograph
 from zspring.errors import ZSpringError
-from zspring.options import opened
+from zspring.options import Pantograph, opened
 
 SMALL = ["--amplitudes", "0.5,4", "--frequencies", "3,6.5:12.5:3", "--jobs", "1"]
 
@@ -26,7 +26,7 @@ def test_frf_writes_the_receptance_that_the_fmu_has(pantograph, tmp_path):
     found = receptances(tmp_path / "out/frf.csv")
     assert sorted(found) == [(a, f) for a in (0.5, 4.0) for f in (3.0, 6.5, 9.5, 12.5)]
     for (amplitude, frequency), value in found.items():
-        p = pantograph({"drive": "Bench"})
+        p = pantograph({"drive": "Bench", "solver.step": 5e-4})
         assert value == pytest.approx(bench_point(p, frequency, amplitude, settled=1e-8), rel=5e-3)
     assert (tmp_path / "out/frf.png").read_bytes().startswith(PNG)
     assert "resonances" in out and "points in" in out and "0.5" in out
@@ -39,10 +39,42 @@ def test_the_head_of_the_file_has_every_parameter_with_its_unit(fmu, tmp_path):
         if name.startswith("bench.") or name == "drive":
             continue
         assert f"# {name}: " in text, name
-    assert "# zspring.Mf: 0.2 N.m" in text and "# solver.step: 0.002 s" in text
+    assert "# zspring.Mf: 0.2 N.m" in text and "# solver.step: 0.0005 s" in text
     (synthetic,) = (line.split()[2:] for line in text.splitlines() if line.startswith("# synthetic:"))
     described = {name for name in fmu.names("parameter") if "(synthetic)" in fmu.variables[name].description}
     assert set(synthetic) == described - {"zspring.Mf"} and "zspring.k" in synthetic  # a value of one's own is not
+
+
+def test_commands_run_at_half_a_millisecond_unless_told_otherwise(tmp_path):
+    """What a set says goes before it, and --set before that; none for what sets the step itself."""
+    own = tmp_path / "own.ssv"
+    own.write_text(
+        '<ssv:ParameterSet xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues" version="1.0" '
+        'name="own"><ssv:Parameters><ssv:Parameter name="solver.step"><ssv:Real value="0.001" unit="s"/>'
+        "</ssv:Parameter></ssv:Parameters></ssv:ParameterSet>"
+    )
+    for parameter_set, assignments, step in (
+        (None, [], 5e-4),
+        ("dsa-250", ["m1=7"], 5e-4),
+        (str(own), [], 1e-3),
+        (str(own), ["solver.step=0.004"], 4e-3),
+    ):
+        with Pantograph(None, parameter_set, assignments).opened() as (_, parameters):
+            assert parameters["solver.step"] == step
+    with Pantograph(None, str(own), []).opened(("solver.step",)) as (_, parameters):
+        assert "solver.step" not in parameters
+
+
+def test_a_coulomb_point_settles_where_2_ms_have_a_cycle_of_their_own(tmp_path):
+    """At 5 Hz and 1 m/s2 the steps of 2 ms keep H from its limit for good; at the commands' step it has one."""
+    point = ["frf", "--set", "friction=Coulomb", "--amplitudes", "1", "--frequencies", "5"]
+    zspring(tmp_path, *point, "--output", "out")
+    (row,) = table(tmp_path / "out/frf.csv")
+    zspring(tmp_path, *point, "--set", "solver.step=1e-4", "--output", "fine")
+    assert row["status"] == "settled"
+    (fine,) = receptances(tmp_path / "fine/frf.csv").values()
+    (found,) = receptances(tmp_path / "out/frf.csv").values()
+    assert found == pytest.approx(fine, rel=3e-3)
 
 
 def test_an_interrupted_measurement_continues_to_the_same_file(tmp_path):
@@ -176,7 +208,7 @@ def test_simulate_tells_which_inputs_the_drive_does_not_use(tmp_path):
 def test_simulate_gives_what_the_fmu_gives(pantograph, tmp_path):
     (tmp_path / "force.csv").write_text("time [s],contact_force [N]\n0,120\n0.1,130\n0.2,110\n")
     zspring(tmp_path, "simulate", "--input", "force.csv", "--step", "0.01", "--output", "out")
-    p = pantograph()
+    p = pantograph({"solver.step": 5e-4})
     expected = []
     for n in range(20):
         t = 0.01 * n

@@ -17,6 +17,7 @@ from zspring.receptance import receptance
 
 FREQUENCY = np.arange(1.0, 20.5, 0.5)
 EDGES = (0.5, 5.0, 20.0)
+LINEAR = {"suspension": 2, "solver.step": 5e-4}
 
 
 @pytest.fixture(scope="module")
@@ -75,9 +76,9 @@ def test_points_that_failed_count_in_no_band():
 
 
 def test_the_linear_fmu_agrees_with_linear_algebra_at_every_amplitude(pantograph, tmp_path):
-    """Within what HHT-alpha shifts frequencies at the step that comparisons take."""
+    """Within what HHT-alpha shifts frequencies at the commands' step."""
     path = write_measured(tmp_path / "measured.csv", linear_receptance(pantograph))
-    found = compare_frf(pantograph, Source(path), {"suspension": 2}, EDGES, "up", 2, threading.Event()).levels
+    found = compare_frf(pantograph, Source(path), LINEAR, EDGES, "up", 2, threading.Event()).levels
     assert [each.measured.label for each in found] == ["1 m/s2", "4 m/s2"]
     for each in found:
         for error in each.errors:
@@ -88,7 +89,7 @@ def test_a_wrong_model_shows_in_the_band_where_it_is_wrong(pantograph, tmp_path)
     """10 % more head mass: nothing at 1 to 2 Hz, where stiffness and frames rule, much near 6.5 Hz."""
     path = write_measured(tmp_path / "measured.csv", linear_receptance(pantograph), (1.0,))
     edges = (0.5, 2.0, 5.0, 8.0, 20.0)
-    heavy = {"suspension": 2, "m1": 1.1 * 7.12}
+    heavy = {**LINEAR, "m1": 1.1 * 7.12}
     (found,) = compare_frf(pantograph, Source(path), heavy, edges, "up", 1, threading.Event()).levels
     by_band = {error.band: error for error in found.errors}
     ratio = linear_receptance(pantograph, m1=1.1 * 7.12) / linear_receptance(pantograph)

@@ -77,6 +77,14 @@ def wait_for_rows(process: subprocess.Popen, path: Path, count: int) -> None:
 # Designs
 
 
+def test_the_step_is_the_commands_own_where_a_study_has_none(own_fmu, tmp_path):
+    begin, end = 'design = "grid"\n[vary]\n', "[static]\namplitudes = [0.02]\n"
+    free = study_of(f"{begin}m1 = [7, 8]\n{end}", own_fmu, tmp_path)
+    own = study_of(f"{begin}m1 = [7, 8]\n[set]\nsolver.step = 0.002\n{end}", own_fmu, tmp_path)
+    varied = study_of(f"{begin}solver.step = [0.001, 0.002]\n{end}", own_fmu, tmp_path)
+    assert [study.common.get("solver.step") for study in (free, own, varied)] == [5e-4, 2e-3, None]
+
+
 def test_a_grid_has_every_combination_and_a_list_its_rows(own_fmu, tmp_path):
     cases = make_cases(study_of(QUICK, own_fmu, tmp_path))
     assert cases == [

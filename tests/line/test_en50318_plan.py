@@ -35,7 +35,11 @@ def test_the_reference_runs_are_the_cases_of_the_edition(references):
     ]
     for run in references:
         assert run.section == Section(5, 6, 60.0) and run.section.bounds == (240.0, 360.0)
-        assert run.pantograph["static_force"] == 120 and run.line["contact_wire.tension"] == 20000
+        assert (
+            run.pantograph["static_force"] == 120
+            and run.pantograph["solver.step"] == 5e-4
+            and run.line["contact_wire.tension"] == 20000
+        )
         assert (run.uplift, run.step, run.scheme, run.start_up, run.start) == (0, 1e-3, "implicit", "ramp", None)
     assert [run.series for run in references] == [f"en-50318-2002-{v}-km-h.csv" for v in (250, 300)]
 

@@ -13,7 +13,7 @@ from ..fmu import Fmu
 from ..line.journey import LineExtent
 from ..line.mean_force import mean_force
 from ..line.statistics import Section
-from ..parameter_sets import LINES, find_set, read_set
+from ..parameter_sets import ACCURATE_STEP, LINES, find_set, read_set
 from ..variables import Value, parse
 from .edition import Case, Edition
 
@@ -124,7 +124,7 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
     runs = []
     for speed in speeds:
         for label, name, given in HEADS:
-            parameters = read_set(find_set(name), pantograph)
+            parameters = _pantograph(name, pantograph)
             parameters |= {key: parse(pantograph.variables[key], text) for key, text in given.items()}
             parameters["static_force"] = mean_force("AC", 0.0)
             uplift = mean_force("AC", speed) - mean_force("AC", 0.0)
@@ -135,7 +135,7 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
 
 def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run:
     line = read_set(find_set(case.line, LINES), catenary)
-    parameters = {**read_set(find_set(case.pantograph), pantograph), "static_force": case.static_force}
+    parameters = {**_pantograph(case.pantograph, pantograph), "static_force": case.static_force}
     return Run(
         "reference",
         case.title,
@@ -146,6 +146,11 @@ def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run
         parameters,
         series=f"{slug(f'{edition.name} {case.title}')}.csv",
     )
+
+
+def _pantograph(name: str, pantograph: Fmu) -> dict[str, Value]:
+    """A set's parameters, with the commands' internal step where it has none."""
+    return {"solver.step": ACCURATE_STEP, **read_set(find_set(name), pantograph)}
 
 
 def section_of(case: Case, catenary: Fmu, line: Parameters) -> Section:

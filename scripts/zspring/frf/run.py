@@ -11,6 +11,7 @@ from ..bench.measure import BENCHES, FAILED, FrfPoint, FrfSettings, left_out, me
 from ..errors import ZSpringError, tell
 from ..figures import save
 from ..fmu import Fmu
+from ..parameter_sets import ACCURATE_STEP
 from ..records import Record, fill
 from ..variables import Value, text
 from . import report
@@ -79,8 +80,9 @@ def default_folder(fmu: Fmu, settings: FrfSettings) -> Path:
     friction = fmu.variables["friction"]
     value = settings.parameters.get("friction", int(friction.start))
     name = f"frf-{text(friction, value).lower()}-{settings.direction}"
-    standard = replace(FrfSettings(), direction=settings.direction, parameters={"friction": value})
-    used = replace(settings, parameters={"friction": value, **settings.parameters})
+    others = {"friction": value, "solver.step": ACCURATE_STEP}
+    standard = replace(FrfSettings(), direction=settings.direction, parameters=others)
+    used = replace(settings, parameters={**others, **settings.parameters})
     if used != standard:
         name += "-" + hashlib.sha256(repr(used).encode()).hexdigest()[:8]
     return Path("results") / name

@@ -14,13 +14,11 @@ from ..bench.curves import Source
 from ..bench.measure import BENCH_PARAMETERS
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..parameter_sets import PANTOGRAPHS, find_set, read_set
+from ..parameter_sets import ACCURATE_STEP, PANTOGRAPHS, find_set, read_set
 from ..settings import ALL_FREQUENCIES, Band, BesidePath, Positive, Table, by_full_name, fitting, set_name, settings_of
 from ..variables import Value, Variables, parse
 
 LINEAR_PARAMETERS = ("m1", "m2", "m3", "c1", "c2", "c3", "k1", "k2", "k3")
-# At the FMU's own step of 2 ms HHT's error near 12 Hz would go into the parameters: 1.6 % of zspring.l0.
-ACCURATE_STEP = 5e-4  # s
 UNKNOWN = (  # what only the bench knows: how to say it, and what it is worth
     (
         "static_force",
@@ -232,6 +230,7 @@ def _fixed(
                     f"nor [fixed] {name} = {example[1]}. {reason}"
                 )
     fixed = {
+        # At 2 ms HHT's error near 12 Hz would go into the parameters: 1.6 % of zspring.l0.
         **({} if linear else {"solver.step": ACCURATE_STEP}),
         **{name: value for name, value in values.items() if name not in BENCH_PARAMETERS},
         **given,

@@ -14,6 +14,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, Str
 from ..bench.measure import BENCH_PARAMETERS, LOOK_PERIODS, FrfSettings
 from ..errors import ZSpringError
 from ..options import Numbers
+from ..parameter_sets import ACCURATE_STEP
 from ..settings import ALL_FREQUENCIES, Band, Positive, Table, by_full_name, fitting, named, settings_of
 from ..variables import Value, Variables, text
 from .evaluations import FrfQuantity, Quantity, StaticQuantity
@@ -170,6 +171,8 @@ def read_study(path: Path, variables: Variables) -> StudySettings:
             common = {name: _value(variables, name, value) for name, value in file.common.items()}
         with named("[vary] "):
             vary = {name: _varied(variables, name, value, file.design) for name, value in file.vary.items()}
+        if "solver.step" not in vary:
+            common = {"solver.step": ACCURATE_STEP, **common}
         lengths = {name: len(values) for name, values in vary.items() if not isinstance(values, Range)}
         if file.design == "list" and len(set(lengths.values())) > 1:
             found = ", ".join(f"{name} has {length}" for name, length in lengths.items())
