@@ -65,15 +65,17 @@ def test_newtons_statistics_are_sums_but_for_the_worst_step():
     assert solver_line([FrfPoint(1, 2, "failed: x")]).startswith("Newton: 0.00 iterations per step")
 
 
-def test_only_points_that_failed_or_did_not_settle_are_doubtful():
+def test_only_points_that_failed_or_found_no_steady_state_of_the_drives_period_are_doubtful():
     points = [
         FrfPoint(1, 2, "settled", 1.0, 8, 1e-4),
-        FrfPoint(1, 3, "not settled", 1.0, 400, 0.0123),
+        FrfPoint(1, 3, "not settled", 1.0, 400, 0.0123, remaining=0.0456),
+        FrfPoint(2, 3, "period 2", 1.0, 60, 0.0123),
         FrfPoint(8, 1, "left out"),
         FrfPoint(8, 4, "failed: no solution"),
     ]
     assert doubtful_lines(points) == [
-        "1 m/s2, 3 Hz: not settled after 400 periods (change 0.012)",
+        "1 m/s2, 3 Hz: not settled after 400 periods (change 0.012, about 0.046 from steady)",
+        "2 m/s2, 3 Hz: period 2: repeats only after so many periods of the drive (change 0.012)",
         "8 m/s2, 4 Hz: failed: no solution",
     ]
 

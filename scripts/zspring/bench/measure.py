@@ -11,20 +11,21 @@ import queue
 import threading
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..fmu import Fmu, StepDiscarded
 from ..variables import Value, exact
 from .fmu_bench import FmuBench
 from .input_bench import InputBench
+from .steady import LOOK_PERIODS, mean_response, repeats_after
 
 Bench = FmuBench | InputBench
 BENCHES: dict[str, type[Bench]] = {"bench": FmuBench, "inputs": InputBench}
 BENCH_PARAMETERS = ("drive", "bench.frequency", "bench.acceleration")  # set by the measurement itself
-LOOK_PERIODS = 4  # periods between two looks at the steady-state criterion
 
 SETTLED, NOT_SETTLED, LEFT_OUT, FAILED = "settled", "not settled", "left out", "failed"
+REPEATS = "period"  # with a number: steady, but it repeats only after so many periods of the drive
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class FrfSettings:
     parameters: Mapping[str, Value] = field(default_factory=dict)  # of the FMU
     direction: str = "up"  # "up", "down", or "rest": each point from the static state
     through: str = "bench"  # key of BENCHES
-    tolerance: float = 1e-3  # largest relative change of H, see settle
+    tolerance: float = 1e-3  # largest relative distance of H from its steady state, see settle
     min_periods: int = 8
     max_periods: int = 400
     stroke: float = 0.1  # m, largest displacement peak
@@ -57,7 +58,10 @@ class FrfSettings:
 
 @dataclass(frozen=True)
 class FrfPoint:
-    """One point; H in m/N and its change are NaN where nothing was measured, and where it failed."""
+    """One point; H in m/N and what is told of it are NaN where nothing was measured, and where it failed.
+
+    H is of the last period, or of the last k together with the status "period k".
+    """
 
     amplitude: float  # m/s2
     frequency: float  # Hz
@@ -69,6 +73,7 @@ class FrfPoint:
     iterations: int = 0
     refinements: int = 0
     iterations_max: int = 0  # of the worst step since the sweep began
+    remaining: float = math.nan  # estimated distance of H from its steady state, relative to H
 
     @property
     def displacement(self) -> float:
@@ -172,26 +177,28 @@ def settle(
 ) -> FrfPoint | None:
     """Run until H is steady or the most periods allowed have passed; None if stopped before.
 
-    Steady: H differs from that of the period before and from that of the last look by at most the tolerance,
-    relatively. The second look rules out that a slow drift or a beat passes for steady in one of its turns.
+    Steady: H repeats within the tolerance, see `repeats_after`, seldom after some periods of the drive only.
     """
     counters = ("solver.steps", "solver.iterations", "solver.refinements")
     before = bench.instance.get(counters)
-    nothing = complex(math.nan, math.nan), math.nan
-    status, (H, change) = NOT_SETTLED, nothing
+    fewest = max(settings.min_periods, 2 * LOOK_PERIODS)
+    status, repeat, value, change, left = NOT_SETTLED, 0, complex(math.nan, math.nan), math.nan, math.nan
+    H: list[complex] = []  # by period, after the ramp
     try:
-        bench.run(1 + LOOK_PERIODS)
-        while status == NOT_SETTLED and bench.periods < settings.max_periods:
+        while not repeat and len(H) < settings.max_periods:
             if stop.is_set():
                 return None
-            last = bench.H
-            bench.run(LOOK_PERIODS)
-            H, change = bench.H, bench.change
-            drift = abs(H - last) / abs(H) if H else 1.0
-            if bench.periods >= settings.min_periods and max(change, drift) <= settings.tolerance:
-                status = SETTLED
+            bench.run(1)
+            if bench.periods:
+                H.append(bench.H)
+            if len(H) == settings.max_periods or (len(H) >= fewest and len(H) % LOOK_PERIODS == 0):
+                repeat, left = repeats_after(H, settings.tolerance)
+        if repeat:
+            status = SETTLED if repeat == 1 else f"{REPEATS} {repeat}"
+        value, change = mean_response(H[-max(1, repeat) :]), bench.change
     except StepDiscarded as error:
-        status, (H, change) = f"{FAILED}: {error}", nothing
+        status, left = f"{FAILED}: {error}", math.nan
     used = (int(after - earlier) for earlier, after in zip(before, bench.instance.get(counters)))
-    worst = map(int, bench.instance.get(["solver.iterations_max"]))
-    return FrfPoint(amplitude, frequency, status, H, bench.periods, change, *used, *worst)
+    (worst,) = map(int, bench.instance.get(["solver.iterations_max"]))
+    point = FrfPoint(amplitude, frequency, status, value, bench.periods, change, *used)
+    return replace(point, iterations_max=worst, remaining=left)

@@ -21,7 +21,7 @@ from .static_test import StaticTest
 
 Periods = tuple[int, ...]  # for each point of a curve
 
-# Four times the tolerance is the error of a point that creeps to its steady state; far below any measurement.
+# How far a point may be from its steady state: far below any measurement.
 SETTLED = FrfSettings(tolerance=2e-4)
 
 

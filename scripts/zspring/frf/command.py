@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import click
 
-from ..bench.measure import BENCH_PARAMETERS, BENCHES, LOOK_PERIODS, FrfSettings
+from ..bench.measure import BENCH_PARAMETERS, BENCHES, FrfSettings
 from ..bench.responses import QUANTITIES
+from ..bench.steady import LOOK_PERIODS
 from ..options import POSITIVE, choice, format_option, jobs_option, numbers, option, output_option, pantograph_options
 from ..records import claimed
 
@@ -43,8 +44,8 @@ STANDARD = FrfSettings()
     "--tolerance",
     default=STANDARD.tolerance,
     kind=POSITIVE,
-    help="A point is settled when H differs by no more than this, relatively, from the period before "
-    f"and from {LOOK_PERIODS} periods before.",
+    help="A point is settled when H differs by no more than this, relatively, from the period before, from "
+    f"{LOOK_PERIODS} periods before, and from where its transient leads, told from how it decays.",
 )
 @option(
     "--min-periods",
@@ -56,7 +57,7 @@ STANDARD = FrfSettings()
     "--max-periods",
     default=STANDARD.max_periods,
     kind=click.IntRange(min=2 * LOOK_PERIODS),
-    help="Most periods of a point; it is marked if it has not settled by then.",
+    help="Most periods of a point; it is marked if it has not settled by then, or repeats only after several.",
 )
 @option(
     "--stroke",

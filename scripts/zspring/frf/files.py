@@ -31,6 +31,7 @@ def frf_columns(quantity: str) -> list[str]:
         "iterations",
         "refinements",
         "iterations_max",
+        "remaining",
     ]
 
 
@@ -41,6 +42,7 @@ def frf_row(point: FrfPoint, quantity: str) -> list[object]:
         *(point.frequency, point.amplitude, point.displacement, point.H.real, point.H.imag),
         *(abs(value), float(phase_degrees(value, quantity)), point.periods, point.change, point.status),
         *(point.steps, point.iterations, point.refinements, point.iterations_max),
+        point.remaining,
     ]
 
 
@@ -61,6 +63,7 @@ def frf_point(row: Mapping[str, str]) -> FrfPoint:
         iterations=int(row["iterations"]),
         refinements=int(row["refinements"]),
         iterations_max=int(row["iterations_max"]),
+        remaining=number("remaining"),
     )
 
 

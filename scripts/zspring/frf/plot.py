@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
-from ..bench.measure import LEFT_OUT, NOT_SETTLED, FrfPoint
+from ..bench.measure import LEFT_OUT, NOT_SETTLED, REPEATS, FrfPoint
 from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
 from ..figures import new_figure
 
@@ -53,8 +53,9 @@ def frf_figure(
         style = {"color": color, "linewidth": 1.2, "marker": ".", "markersize": 3}
         magnitude.semilogy(frequency, np.abs(value), label=f"{amplitude:g} m/s²", **style)
         phase.plot(frequency, phase_degrees(value, quantity), **style)
-        doubtful = np.array([p.status == NOT_SETTLED for p in curve])
-        magnitude.semilogy(frequency[doubtful], np.abs(value[doubtful]), "o", color=color, fillstyle="none")
+        for status, marker in ((NOT_SETTLED, "o"), (REPEATS, "D")):
+            doubtful = np.array([p.status.startswith(status) for p in curve])
+            magnitude.semilogy(frequency[doubtful], np.abs(value[doubtful]), marker, color=color, fillstyle="none")
         missing = frequency[[p.status == LEFT_OUT for p in curve]]
         height = np.full(missing.shape, 0.02 + 0.022 * number)
         magnitude.plot(missing, height, "x", color=color, markersize=4, transform=magnitude.get_xaxis_transform())
@@ -62,9 +63,10 @@ def frf_figure(
     handles = magnitude.get_legend_handles_labels()[0]
     for status, marker, label in (
         (NOT_SETTLED, "o", "not settled"),
+        (REPEATS, "D", "repeats only after several periods"),
         (LEFT_OUT, "x", f"left out: stroke > {1e3 * stroke:g} mm"),
     ):
-        if any(point.status == status for point in points):
+        if any(point.status.startswith(status) for point in points):
             handles.append(
                 Line2D(
                     [], [], color="gray", linestyle="none", marker=marker, fillstyle="none", markersize=5, label=label

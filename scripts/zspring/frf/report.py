@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, FrfPoint, FrfSettings
+from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, REPEATS, FrfPoint, FrfSettings
 from ..bench.resonances import extremes
 from ..fmu import Fmu
 from ..heads import file_head, now, synthetic_note
@@ -87,13 +87,18 @@ def error_line(errors: Mapping[tuple[float, float], float]) -> str:
 
 
 def doubtful_lines(points: Iterable[FrfPoint]) -> list[str]:
-    """One line for each point that did not settle or failed."""
-    return [
-        f"{p.amplitude:g} m/s2, {p.frequency:g} Hz: {p.status}"
-        + (f" after {p.periods} periods (change {p.change:.2g})" if p.status == NOT_SETTLED else "")
-        for p in points
-        if p.status == NOT_SETTLED or p.status.startswith(FAILED)
-    ]
+    """One line for each point that did not settle, repeats only after several periods, or failed."""
+    lines = []
+    for p in points:
+        about = ""
+        if p.status == NOT_SETTLED:
+            about = f" after {p.periods} periods (change {p.change:.2g}, about {p.remaining:.2g} from steady)"
+        elif p.status.startswith(REPEATS):
+            about = f": repeats only after so many periods of the drive (change {p.change:.2g})"
+        elif not p.status.startswith(FAILED):
+            continue
+        lines.append(f"{p.amplitude:g} m/s2, {p.frequency:g} Hz: {p.status}{about}")
+    return lines
 
 
 def _cells(found: Iterable[tuple[float, float]]) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..bench.fmu_bench import FmuBench
 from ..bench.loops import measure_loop
-from ..bench.measure import FAILED, NOT_SETTLED, FrfSettings, run_sweep, sweeps
+from ..bench.measure import FAILED, NOT_SETTLED, REPEATS, FrfSettings, run_sweep, sweeps
 from ..bench.resonances import extremes
 from ..fmu import Instance
 from ..variables import Value, exact, parse, text
@@ -56,7 +56,7 @@ class FrfQuantity:
         for sweep in sweeps(self.settings):
             for point, _ in run_sweep(bench, sweep, self.settings, threading.Event()):
                 found[point.amplitude, point.frequency] = point.H
-                unsettled += point.status == NOT_SETTLED
+                unsettled += point.status.startswith((NOT_SETTLED, REPEATS))
                 if point.status.startswith(FAILED):
                     problems.append(f"{point.amplitude:g} m/s2, {point.frequency:g} Hz: {point.status}")
         values: dict[str, float] = {NOT_SETTLED_COLUMN: unsettled}
