@@ -16,7 +16,7 @@ import click
 
 from .errors import ZSpringError
 from .fmu import Fmu
-from .parameter_sets import ACCURATE_STEP, PANTOGRAPHS, find_set, read_set
+from .parameter_sets import ACCURATE_STEP, PANTOGRAPHS, chosen_set
 from .variables import Value
 
 MOST_NUMBERS = 100_000
@@ -99,7 +99,7 @@ parameters_option = option(
     kind=str,
     metavar="NAME|FILE",
     help="Set the parameters of a pantograph: the name of a set (`zspring info --sets` lists them) or an "
-    "SSV file of SSP 1.0. --set goes before it.",
+    "SSV file of SSP; FILE#PREFIX reads those whose names begin with PREFIX and a dot. --set goes before it.",
 )
 format_option = choice("--format", "suffix", of=["png", "svg"], default="png", help="Format of the figure.")
 
@@ -187,8 +187,5 @@ def chosen_parameters(
     but_not     parameters that the command sets itself: passed over in a set, refused in an assignment
     kind        of the sets in the package
     """
-    values = read_set(find_set(parameter_set, kind), fmu) if parameter_set else {}
-    return {
-        **{name: value for name, value in values.items() if name not in but_not},
-        **fmu.variables.parse_assignments(assignments, but_not),
-    }
+    values = chosen_set(parameter_set, fmu, kind, but_not) if parameter_set else {}
+    return {**values, **fmu.variables.parse_assignments(assignments, but_not)}

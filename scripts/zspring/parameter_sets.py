@@ -1,7 +1,11 @@
-"""Parameter sets as files of SSP 1.0: System Structure Parameter Values (SSV).
+"""Parameter sets as files of SSP 1.0 or 2.0: System Structure Parameter Values (SSV).
 
-The sets in this package are found by name, those of the user by path. Their descriptions say where the
-numbers come from and how far they are trusted; a parameter less certain than its set says so itself.
+The sets in this package are found by name, those of the user by path; FILE#PREFIX are the parameters of a file whose
+names begin with PREFIX and a dot, as sets of whole systems have them. Descriptions say where the numbers come from and
+how far they are trusted; a parameter less certain than its set says so itself.
+
+Every parameter of a set must be one of the FMU. What a command sets itself is passed over, and a set of which nothing
+remains is refused.
 """
 
 from __future__ import annotations
@@ -9,7 +13,7 @@ from __future__ import annotations
 import importlib.resources
 import math
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 
 from fmpy.model_description import ScalarVariable
@@ -27,9 +31,18 @@ ACCURATE_STEP = 5e-4  # s
 _SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 _SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
 _NAMESPACES = {"ssv": _SSV, "ssc": _SSC}
+# Elements: in which others they may be, and how SSP 2.0 names FMI 2.0's types.
+_INSIDE = {
+    f"{{{_SSV}}}ParameterSet": {f"{{{_SSV}}}{name}" for name in ("Parameters", "Enumerations", "Units", "Annotations")}
+    | {f"{{{_SSC}}}{name}" for name in ("MetaData", "Signature")},
+    f"{{{_SSV}}}Parameters": {f"{{{_SSV}}}Parameter"},
+    f"{{{_SSV}}}Units": {f"{{{_SSC}}}Unit"},
+}
+_TYPES = {"Float64": "Real", "Float32": "Real"} | {f"{u}Int{n}": "Integer" for u in ("", "U") for n in (8, 16, 32, 64)}
 _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 BaseUnit = tuple[tuple[int, ...], float, float]  # exponents as in _BASE_UNITS; factor, offset to base units
+_NUMBER: BaseUnit = (0,) * len(_BASE_UNITS), 1.0, 0.0
 
 
 def packaged_sets(kind: str = PANTOGRAPHS) -> dict[str, Path]:
@@ -40,12 +53,31 @@ def packaged_sets(kind: str = PANTOGRAPHS) -> dict[str, Path]:
 
 def find_set(name_or_file: str, kind: str = PANTOGRAPHS) -> Path:
     """The file of a set in this package, or that of a path. Raises ZSpringError if there is neither."""
+    return _file_and_prefix(name_or_file, kind)[0]
+
+
+def chosen_set(name_or_file: str, fmu: Fmu, kind: str = PANTOGRAPHS, but_not: Container[str] = ()) -> dict[str, Value]:
+    """Parameters of a set in this package, of a file, or of a FILE#PREFIX; see read_set.
+
+    but_not     parameters that the command sets itself
+    Raises ZSpringError as find_set and read_set, and for a set of which nothing remains.
+    """
+    path, prefix = _file_and_prefix(name_or_file, kind)
+    values = read_set(path, fmu, prefix)
+    used = {name: value for name, value in values.items() if name not in but_not}
+    if not used:
+        raise ZSpringError(f"{name_or_file}: the command itself sets {', '.join(values)}: nothing of the set is used")
+    return used
+
+
+def _file_and_prefix(name_or_file: str, kind: str) -> tuple[Path, str]:
     known = packaged_sets(kind)
     if name_or_file in known:
-        return known[name_or_file]
-    path = Path(name_or_file)
-    if path.is_file():
-        return path
+        return known[name_or_file], ""
+    file, _, prefix = name_or_file.rpartition("#")
+    for path, chosen in (Path(name_or_file), ""), (Path(file), prefix):
+        if str(path) and path.is_file():
+            return path, chosen
     raise ZSpringError(
         f"{name_or_file}: no such file, and no set of that name{did_you_mean(name_or_file, known)} "
         f"(there are {', '.join(known)})"
@@ -62,29 +94,48 @@ def describe_set(path: Path) -> tuple[str, dict[str, list[str]]]:
     return root.get("description", ""), remarks
 
 
-def read_set(path: Path, fmu: Fmu) -> dict[str, Value]:
+def read_set(path: Path, fmu: Fmu, prefix: str = "") -> dict[str, Value]:
     """Parameters by name, in the FMU's units.
 
+    prefix  of names to read, which have it before a dot; others are passed over
     A unit that the file defines is converted through its base units; any other must be one that the FMU
-    knows. Bounds are left to the FMU. Raises ZSpringError for a file of another kind, a name that is no
-    parameter or comes twice, a wrong type or unit, and a number that is not finite.
+    knows. Bounds are left to the FMU. Raises ZSpringError for a file of another kind, an element that is none of SSV's,
+    a name that is no parameter or comes twice, a wrong type or unit, a number that is not finite, and a set without
+    parameters.
     """
     root = _root(path)
-    units = {
-        unit.get("name", ""): _base_unit(base)
-        for unit in root.iterfind("ssv:Units/ssc:Unit", _NAMESPACES)
-        if (base := unit.find("ssc:BaseUnit", _NAMESPACES)) is not None
-    }
     values: dict[str, Value] = {}
-    for element in root.iterfind("ssv:Parameters/ssv:Parameter", _NAMESPACES):
-        name = element.get("name", "")
-        try:
+    try:
+        units = {
+            unit.get("name", ""): _base_unit(base)
+            for unit in _elements(root, "Units")
+            if (base := unit.find("ssc:BaseUnit", _NAMESPACES)) is not None
+        }
+        for element in _elements(root, "Parameters"):
+            whole = element.get("name", "")
+            name = whole.removeprefix(f"{prefix}.") if prefix else whole
+            if prefix and name == whole:
+                continue
             if name in values:
-                raise ZSpringError(f"two parameters {name!r}")
+                raise ZSpringError(f"two parameters {whole!r}")
+            if not prefix:
+                _look_for_prefix(path, name, fmu)
             values[name] = _value(fmu, fmu.variables.parameter(name), element, units)
-        except ZSpringError as error:
-            raise ZSpringError(f"{path}: {error}") from None
+        if not values:
+            raise ZSpringError(f"no parameter whose name begins with {prefix}." if prefix else "has no parameter")
+    except ZSpringError as error:
+        raise ZSpringError(f"{path}: {error}") from None
     return values
+
+
+def _look_for_prefix(path: Path, name: str, fmu: Fmu) -> None:
+    """Raises ZSpringError for a name of a system's set, pantograph.k1, with how to choose its prefix."""
+    known = fmu.variables.names("parameter")
+    parts = name.split(".")
+    for n in range(1, len(parts)):
+        if name not in known and ".".join(parts[n:]) in known:
+            prefix = ".".join(parts[:n])
+            raise ZSpringError(f"no parameter {name!r} in the FMU; to read those of {prefix!r} give {path}#{prefix}")
 
 
 def write_set(
@@ -129,20 +180,44 @@ def write_set(
 def _root(path: Path) -> ET.Element:
     try:
         root = ET.parse(path).getroot()
-    except ET.ParseError as error:
+    except (ET.ParseError, ValueError, LookupError) as error:  # the latter for an unknown encoding
         raise ZSpringError(f"{path}: no XML: {error}") from None
     if root.tag != f"{{{_SSV}}}ParameterSet":
-        raise ZSpringError(f"{path}: no parameter set of SSP 1.0 (SSV) but {root.tag}")
+        raise ZSpringError(f"{path}: no parameter set of SSP (SSV) but {root.tag}")
+    if root.get("version", "1.0") not in ("1.0", "2.0"):
+        raise ZSpringError(f"{path}: version = {root.get('version')!r}: must be 1.0 or 2.0")
     return root
+
+
+def _elements(root: ET.Element, name: str) -> Iterator[ET.Element]:
+    """What the elements of that name hold. Raises ZSpringError for elements that SSV does not have there."""
+    for parent in (root, *root.iterfind(f"ssv:{name}", _NAMESPACES)):
+        for element in parent:
+            if element.tag not in _INSIDE[parent.tag]:
+                allowed = ", ".join(sorted(_shown(tag) for tag in _INSIDE[parent.tag]))
+                raise ZSpringError(f"element {_shown(element.tag)} in {_shown(parent.tag)}: must be one of {allowed}")
+            if parent is not root:
+                yield element
+
+
+def _shown(tag: str) -> str:
+    space, _, name = tag.rpartition("}")
+    known = {f"{{{_SSV}": "ssv:", f"{{{_SSC}": "ssc:", "": ""}
+    return f"{known[space]}{name}{'' if space else ' (without namespace)'}" if space in known else tag
 
 
 def _value(fmu: Fmu, variable: ScalarVariable, element: ET.Element, units: Mapping[str, BaseUnit]) -> Value:
     """The value of one parameter in the FMU's unit."""
     typed = next(iter(element), None)
-    kind = None if typed is None else typed.tag.removeprefix(f"{{{_SSV}}}")
+    given = None if typed is None else typed.tag.removeprefix(f"{{{_SSV}}}")
+    kind = _TYPES.get(given or "", given)
     if typed is None or (kind != variable.type and (kind, variable.type) != ("Integer", "Enumeration")):
-        raise ZSpringError(f"{variable.name} is {kind}: must be {variable.type}")
-    value, unit = parse(variable, typed.get("value", "")), typed.get("unit", "")
+        raise ZSpringError(f"{variable.name} is {given}: must be {variable.type}")
+    items = [typed, *typed.iterfind("ssv:Value", _NAMESPACES)]  # of SSP 2.0, in place of the attribute
+    texts = [text for item in items if (text := item.get("value")) is not None]
+    if len(texts) != 1:
+        raise ZSpringError(f"{variable.name} has {len(texts)} values: must be one")
+    value, unit = parse(variable, texts[0]), typed.get("unit", "")
     if kind != "Real":
         return value
     if not math.isfinite(value):
@@ -152,7 +227,8 @@ def _value(fmu: Fmu, variable: ScalarVariable, element: ET.Element, units: Mappi
             return value * conversion(unit or variable.unit or "1", variable.unit or "1")[1]
         except UnitError as error:
             raise ZSpringError(f"{variable.name}: {error}") from None
-    own = next(_base_unit(u.baseUnit) for u in fmu.description.unitDefinitions if u.name == variable.unit)
+    definitions = {definition.name: definition.baseUnit for definition in fmu.description.unitDefinitions}
+    own = _base_unit(definitions[variable.unit]) if variable.unit in definitions else _NUMBER
     exponents, factor, offset = units[unit]
     if exponents != own[0]:
         raise ZSpringError(f"{variable.name} [{unit}]: the unit must be convertible to {variable.unit}")
@@ -164,5 +240,9 @@ def _value(fmu: Fmu, variable: ScalarVariable, element: ET.Element, units: Mappi
 def _base_unit(base) -> BaseUnit:
     """Exponents, factor and offset of an XML element or of fmpy's BaseUnit."""
     get = base.get if isinstance(base, ET.Element) else lambda key: getattr(base, key)
-    exponents = tuple(int(get(key) or 0) for key in _BASE_UNITS)
-    return exponents, float(get("factor") or 1), float(get("offset") or 0)
+    try:
+        exponents = tuple(int(get(key) or 0) for key in _BASE_UNITS)
+        factor, offset = float(get("factor") or 1), float(get("offset") or 0)
+    except ValueError as error:
+        raise ZSpringError(f"a unit's definition: {error}") from None
+    return exponents, factor, offset

@@ -1,4 +1,4 @@
-"""Parameter sets (SSV of SSP 1.0): what they hold, that other tools read them, and what is refused."""
+"""Parameter sets (SSV of SSP 1.0 and 2.0): what they hold, that other tools read them, and what is refused."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssv
 
-from commands import head, receptances, zspring
+from commands import head, in_process, receptances, zspring
 from linear import PUBLISHED, LinearPantograph
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
-from zspring.parameter_sets import LINES, describe_set, find_set, packaged_sets, read_set, write_set
+from zspring.parameter_sets import LINES, chosen_set, describe_set, find_set, packaged_sets, read_set, write_set
 from zspring.receptance import receptance
 
 TABLES = {
@@ -129,7 +129,20 @@ def test_units_are_converted_by_definition_or_by_the_fmus_display_units(model, t
         (SSV.format(parameter("m1", 'String value="1"')), "m1 is String: must be Real"),
         (SSV.format(parameter("friction", 'Enumeration value="Dry"')), "friction = 'Dry': must be one of"),
         (SSV.format(2 * parameter("m1", 'Real value="1"')), "two parameters 'm1'"),
-        ("<a/>", "no parameter set of SSP 1.0"),
+        (SSV.format(parameter("m1", 'Float64 value="1 2"')), "m1 = '1 2': must be a number"),
+        (SSV.format(parameter("m1", 'Int32 value="7"')), "m1 is Int32: must be Real"),
+        (SSV.format(parameter("m1", "Real")), "m1 has 0 values: must be one"),
+        (SSV.format(""), "has no parameter"),
+        (SSV.replace("ssv:Parameters", "Parameters"), r"element Parameters \(without namespace\) in ssv:ParameterSet"),
+        (SSV.format('<Parameter name="m1"><Real value="7"/></Parameter>'), r"element Parameter \(without namespace\)"),
+        (
+            SSV.replace("ssc:Unit ", "Unit ").replace("ssc:Unit>", "Unit>"),
+            r"element Unit \(without .*: must be .*ssc:Unit",
+        ),
+        (SSV.replace('version="1.0" n', 'version="3.0" n'), "version = '3.0': must be 1.0 or 2.0"),
+        (SSV.replace('factor="0.5"', 'factor="half"'), "a unit's definition: could not convert"),
+        (SSV.replace('"UTF-8"', '"UTF-99"'), "no XML"),
+        ("<a/>", "no parameter set of SSP"),
         ("m1 = 7", "no XML"),
     ],
 )
@@ -139,6 +152,63 @@ def test_a_bad_set_is_refused_with_its_file_and_parameter(model, tmp_path, text,
     with pytest.raises(ZSpringError, match=f"bad.ssv: .*{complaint}") as error:
         read_set(path, model)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("version", ["1.0", "2.0"])
+def test_types_of_ssp_2_are_those_of_fmi_2(model, tmp_path, version):
+    path = tmp_path / "set.ssv"
+    parameters = [
+        parameter("m1", 'Float64 value="7.5"'),
+        parameter("zspring.k", 'Float32 value="13" unit="N/mm"'),
+        parameter("solver.max_iterations", 'Int64 value="7"'),
+        parameter("friction", 'Int8 value="2"'),
+        '<ssv:Parameter name="drive"><ssv:Enumeration><ssv:Value value="Wire"/></ssv:Enumeration></ssv:Parameter>',
+    ]
+    path.write_text(SSV.format("".join(parameters)).replace('version="1.0" n', f'version="{version}" n'))
+    expected = {"m1": 7.5, "zspring.k": 13e3, "solver.max_iterations": 7, "friction": 2, "drive": 3}
+    assert read_set(path, model) == expected
+    path.write_text(path.read_text().replace('<ssv:Value value="Wire"/>', 2 * '<ssv:Value value="Wire"/>'))
+    with pytest.raises(ZSpringError, match="drive has 2 values: must be one"):
+        read_set(path, model)
+
+
+def test_a_unit_of_a_parameter_without_one_may_be_defined(model, tmp_path):
+    path = tmp_path / "set.ssv"
+    percent = '<ssc:Unit name="%"><ssc:BaseUnit factor="0.01"/></ssc:Unit>'
+    text = SSV.format(parameter("solver.alpha", 'Real value="-25" unit="%"'))
+    path.write_text(text.replace("<ssv:Units>", f"<ssv:Units>{percent}"))
+    assert read_set(path, model) == {"solver.alpha": -0.25}
+
+
+def test_a_prefix_chooses_one_component_of_a_systems_set(model, tmp_path):
+    path = tmp_path / "system.ssv"
+    names = {"train.pantograph.zspring.k": 9000, "train.pantograph.m1": 7, "line.m1": 99}
+    path.write_text(SSV.format("".join(parameter(name, f'Real value="{v}"') for name, v in names.items())))
+    assert chosen_set(f"{path}#train.pantograph", model) == {"zspring.k": 9000.0, "m1": 7.0}
+    assert chosen_set(f"{path}#line", model) == {"m1": 99.0}
+    told = (
+        f"no parameter 'train.pantograph.zspring.k' in the FMU; to read those of 'train.pantograph' give {path}#train"
+    )
+    with pytest.raises(ZSpringError, match=re.escape(told)):
+        chosen_set(str(path), model)
+    with pytest.raises(ZSpringError, match=r"system\.ssv: no parameter whose name begins with panto\."):
+        chosen_set(f"{path}#panto", model)
+    with pytest.raises(ZSpringError, match=r"no parameter 'pantograph\.zspring\.k' in the FMU"):
+        chosen_set(f"{path}#train", model)
+    hash_in_name = path.rename(tmp_path / "a#line.ssv")
+    with pytest.raises(ZSpringError, match=r"a#line\.ssv#train\.pantograph$"):
+        chosen_set(str(hash_in_name), model)
+
+
+def test_a_set_of_which_the_command_uses_nothing_is_refused(model, tmp_path):
+    path = tmp_path / "set.ssv"
+    write_set(path, model, model.variables.parse_assignments(["drive=Wire", "bench.frequency=3"]), "mine", "")
+    status, _, err = in_process("frf", "--parameters", path, "--output", tmp_path / "out")
+    assert (status, err) == (
+        1,
+        f"zspring: {path}: the command itself sets drive, bench.frequency: nothing of the set is used\n",
+    )
+    assert not (tmp_path / "out").exists()
 
 
 def test_frf_takes_a_set_by_name_and_an_assignment_before_it(tmp_path):

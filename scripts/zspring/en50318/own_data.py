@@ -17,7 +17,7 @@ from ..interrupt import Interrupted, stop_on_interrupt
 from ..line.series import Series, read_series, require_pressing
 from ..line.stated import SAME_SPEED, agreed
 from ..line.statistics import FIGURES, Section, Statistics, statistics
-from ..parameter_sets import LINES, find_set, read_set
+from ..parameter_sets import LINES, chosen_set
 from ..tables import write_table
 from ..variables import Value, with_unit
 from . import about, plot, report
@@ -64,7 +64,7 @@ class OwnData:
         lengths = {"--span": self.span, **{name: head.span for name, head in heads.items()}}
         of_case = None
         if case:
-            of_case = section_of(case, catenary, read_set(find_set(case.line, LINES), catenary))
+            of_case = section_of(case, catenary, chosen_set(case.line, catenary, LINES))
             speeds[f"the case {case.title}"] = case.speed
             lengths[f"the case {case.title}"] = of_case.span
         agreed("speed", "km/h", speeds, SAME_SPEED)

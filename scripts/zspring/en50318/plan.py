@@ -13,7 +13,7 @@ from ..fmu import Fmu
 from ..line.journey import LineExtent
 from ..line.mean_force import mean_force
 from ..line.statistics import Section
-from ..parameter_sets import ACCURATE_STEP, LINES, find_set, read_set
+from ..parameter_sets import ACCURATE_STEP, LINES, chosen_set
 from ..variables import Value, parse
 from .edition import Case, Edition
 
@@ -117,7 +117,7 @@ def sensitivity_runs(references: Sequence[Run]) -> list[Run]:
 
 def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPEEDS) -> list[Run]:
     """The linear and the Z-spring head along the same line, with the mean force of the law for AC lines."""
-    line = read_set(find_set(HEAD_LINE, LINES), catenary)
+    line = chosen_set(HEAD_LINE, catenary, LINES)
     extent = LineExtent.of(catenary, line)
     section = Section(*HEAD_SPANS, extent.span)
     shown = SHOWN_HEADS if SHOWN_HEADS in speeds else speeds[-1]
@@ -134,7 +134,7 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
 
 
 def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run:
-    line = read_set(find_set(case.line, LINES), catenary)
+    line = chosen_set(case.line, catenary, LINES)
     parameters = {**_pantograph(case.pantograph, pantograph), "static_force": case.static_force}
     return Run(
         "reference",
@@ -150,7 +150,7 @@ def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run
 
 def _pantograph(name: str, pantograph: Fmu) -> dict[str, Value]:
     """A set's parameters, with the commands' internal step where it has none."""
-    return {"solver.step": ACCURATE_STEP, **read_set(find_set(name), pantograph)}
+    return {"solver.step": ACCURATE_STEP, **chosen_set(name, pantograph)}
 
 
 def section_of(case: Case, catenary: Fmu, line: Parameters) -> Section:

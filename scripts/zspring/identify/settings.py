@@ -14,7 +14,7 @@ from ..bench.curves import Source
 from ..bench.measure import BENCH_PARAMETERS
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..parameter_sets import ACCURATE_STEP, PANTOGRAPHS, find_set, read_set
+from ..parameter_sets import ACCURATE_STEP, PANTOGRAPHS, chosen_set
 from ..settings import ALL_FREQUENCIES, Band, BesidePath, Positive, Table, by_full_name, fitting, set_name, settings_of
 from ..variables import Value, Variables, parse
 
@@ -212,7 +212,7 @@ def _fixed(
     tells them.
     """
     chosen = parameter_set or settings.parameter_set
-    values = read_set(find_set(chosen), fmu) if chosen else {}
+    values = chosen_set(chosen, fmu, but_not=BENCH_PARAMETERS) if chosen else {}
     lines = [f"{name}={value}" for name, value in settings.fixed.items()]
     given = fmu.variables.parse_assignments([*lines, *assignments], but_not=BENCH_PARAMETERS)
     for name in given:
@@ -232,7 +232,7 @@ def _fixed(
     fixed = {
         # At 2 ms HHT's error near 12 Hz would go into the parameters: 1.6 % of zspring.l0.
         **({} if linear else {"solver.step": ACCURATE_STEP}),
-        **{name: value for name, value in values.items() if name not in BENCH_PARAMETERS},
+        **values,
         **given,
         **fmu.variables.parse_assignments([f"suspension={'Linear' if linear else 'ZSpring'}"]),
     }
