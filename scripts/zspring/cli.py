@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import sys
+from collections.abc import Sequence
 from importlib.metadata import entry_points
 
 import click
@@ -50,10 +52,13 @@ for name in RESEARCH:
     commands.add_command(research_command(name))
 
 
-def main() -> int:
-    """Run the command line; returns 0 (fine), 1 (failure, one line on stderr) or 130 (interrupted)."""
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line or these arguments: 0 (fine), 1 (failure, one line on stderr) or 130 (interrupted)."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # what a terminal cannot show is shown as its code
+            stream.reconfigure(errors="backslashreplace")
     try:
-        return commands.main(standalone_mode=False) or 0
+        return commands.main(arguments, standalone_mode=False) or 0
     except click.ClickException as error:
         message, status = error.format_message(), 1
     except ZSpringError as error:

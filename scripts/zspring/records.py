@@ -1,7 +1,8 @@
-"""Results under way: a table that survives an interruption at any moment, and the loop that fills it."""
+"""Results that nobody overwrites: tables that survive an interruption at any moment, and the loop that fills them."""
 
 from __future__ import annotations
 
+import textwrap
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -16,6 +17,8 @@ from .interrupt import Interrupted, stop_on_interrupt
 from .tables import TableFile, read_rows, write_table
 
 T = TypeVar("T")
+
+REMEDY = "remove it, or give another --output"
 
 
 class Record(Generic[T]):
@@ -42,14 +45,12 @@ class Record(Generic[T]):
         self._to_row = to_row
         self.results: list[T] = []  # in the order they were kept
         if path.exists():
-            remedy = "remove it, or give another --output"
             found, rows = read_rows(path)
-            if differs := _difference(found, self.head):
-                raise ZSpringError(f"{path} is of other settings ({differs}): {remedy}")
+            keep_others(path, self.head, found)
             try:
                 self.results = [from_row(row) for row in rows]
             except (KeyError, TypeError, ValueError):
-                raise ZSpringError(f"{path}: is not as it was written: {remedy}") from None
+                raise ZSpringError(f"{path}: is not as it was written: {REMEDY}") from None
 
     def __enter__(self) -> Record[T]:
         self.write(self.results)
@@ -129,10 +130,24 @@ def claimed(folder: Path) -> Iterator[None]:
                 path.rmdir()  # where nothing was written
 
 
+def keep_others(path: Path, head: Mapping[str, str], found: Mapping[str, str] | None = None) -> None:
+    """To call before work whose results go to `path`. The same settings may come again.
+
+    found   head of the file that is there; None: that of the table
+    Raises ZSpringError for a file there of other settings, by its head but for the date.
+    """
+    if path.exists() and (differs := _difference(read_rows(path)[0] if found is None else found, head)):
+        raise ZSpringError(f"{path} is of other settings ({differs}): {REMEDY}")
+
+
 def _difference(there: Mapping[str, str], here: Mapping[str, str]) -> str:
     """The first key, but the date, in which two heads differ, with both values; empty where none does."""
     for key in (key for key in [*here, *there] if key != "date"):
         before, now = there.get(key), here.get(key, "").strip()
         if before != now:
-            return f"{key}: {before or 'none'}, now {now or 'none'}"
+            return f"{key}: {_shown(before)}, now {_shown(now)}"
     return ""
+
+
+def _shown(value: str | None) -> str:
+    return textwrap.shorten(value or "none", 80, placeholder=" ...")

@@ -86,6 +86,11 @@ def exact(number: float) -> str:
     return repr(float(number)).removesuffix(".0")
 
 
+def exact_list(numbers: Iterable[float], unit: str) -> str:
+    """Numbers as `exact` has them, and their unit."""
+    return f"{' '.join(map(exact, numbers))} {unit}"
+
+
 def text(variable: ScalarVariable, value: Value) -> str:
     """The value as `parse` reads it back: shortest exact number, or the name of the enumeration's item."""
     if variable.type in ("Real", "Integer"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import signal
 import time
 import zipfile
@@ -14,6 +16,7 @@ import pytest
 from commands import PNG, head, receptances, start, table, zspring
 from harness import bench_point
 from linear import PUBLISHED, LinearPantograph
+from zspring.cli import main
 from zspring.errors import ZSpringError
 from zspring.options import Pantograph, opened
 
@@ -343,6 +346,24 @@ def test_info_takes_patterns_and_names_what_fits_none(tmp_path):
     assert [line.split()[0] for line in out.splitlines()[1:]] == ["zspring.L1", "zspring.L2", "gravity"]
     _, err = zspring(tmp_path, "info", "gravity", "zspring.M?", "zspring.K?", status=1)
     assert "no variable 'zspring.K?' in the FMU" in err
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
+def test_names_that_the_terminal_cannot_show_are_no_failure(tmp_path, encoding):
+    """Neither in results nor in a refusal; what there is no letter for is shown as its code."""
+    name = "Łódź Prüfstand"
+    shown = name.encode(encoding, "backslashreplace")
+    for arguments, status, stream in (
+        (["linearize", "--output", str(tmp_path / name)], 0, "stdout"),
+        (["frf", "--parameters", name], 1, "stderr"),
+    ):
+        terminal = io.TextIOWrapper(io.BytesIO(), encoding)
+        redirect = contextlib.redirect_stdout if stream == "stdout" else contextlib.redirect_stderr
+        with redirect(terminal):
+            assert main(arguments) == status
+        terminal.flush()
+        assert shown in terminal.buffer.getvalue()
+    assert (tmp_path / name / "linear-free.npz").exists()
 
 
 @pytest.mark.parametrize(

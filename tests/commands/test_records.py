@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import multiprocessing
+import re
 from pathlib import Path
 
 import pytest
 
-from commands import zspring
+from commands import in_process, zspring
 from zspring.errors import ZSpringError
 from zspring.interrupt import Interrupted
 from zspring.records import Record, claimed, fill
@@ -95,3 +96,38 @@ def test_a_second_run_in_a_folder_ends_before_it_works(tmp_path):
     assert other.exitcode == 0 and list(tmp_path.iterdir()) == []
     zspring(tmp_path, "linearize", "--output", "out")
     assert not list((tmp_path / "out").glob(".*"))
+
+
+POINT = ["--amplitudes", "1", "--frequencies", "5"]
+
+
+@pytest.mark.parametrize(
+    ("command", "other", "file", "differs"),
+    [
+        (["frf", *POINT], ["--set", "m1=7"], "frf.csv", "m1: 7.12 kg, now 7 kg"),
+        (["frf", *POINT], ["--direction", "down"], "frf.csv", "direction: up, now down"),
+        (["static", *POINT[:2], "--rates", "1"], ["--rates", "2"], "stiffness.csv", "rates: 0.001 m/s, now 0.002 m/s"),
+        (["mechanism"], ["--frequency", "3"], "mechanism.csv", "frequency: 2 Hz, now 3 Hz"),
+        (["linearize"], ["--set", "c1=1"], "linear-linear.npz", "c1: 0 N.s/m, now 1 N.s/m"),
+        (["linearize"], ["--frequencies", "1,2"], "linear-linear.npz", r"frequencies: 0.05 .* \.\.\., now 1 2 Hz"),
+    ],
+)
+def test_finished_results_are_repeated_but_not_overwritten_by_others(tmp_path, command, other, file, differs):
+    out = tmp_path / "out"
+    for _ in range(2):
+        assert in_process(*command, "--output", out)[0] == 0
+    before = {path: path.read_bytes() for path in out.iterdir()}
+    status, _, err = in_process(*command, *other, "--output", out)
+    assert status == 1
+    assert re.fullmatch(
+        rf"zspring: {out / file} is of other settings \({differs}\): remove it, or give another --output\n", err
+    )
+    assert {path: path.read_bytes() for path in out.iterdir()} == before
+
+
+def test_a_file_of_somebody_else_is_no_result_to_overwrite(tmp_path):
+    (tmp_path / "stiffness.csv").write_text("my,own\n1,2\n")
+    (tmp_path / "linear-free.npz").write_text("my own")
+    for command in (["static"], ["linearize"]):
+        status, _, err = in_process(*command, "--output", tmp_path)
+        assert status == 1 and "is of other settings (FMU: none, now ZSpringPantograph" in err

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import io
 import os
 import signal
 import subprocess
 import sys
 from pathlib import Path
+
+from zspring.cli import main
 
 PNG = b"\x89PNG\r\n"
 
@@ -62,6 +66,14 @@ def zspring(folder: Path, *arguments: str, status: int = 0) -> tuple[str, str]:
     assert process.returncode == status, err
     assert "Traceback" not in err
     return out, err
+
+
+def in_process(*arguments: str | Path) -> tuple[int, str, str]:
+    """Status, standard output and error of `zspring` with these arguments, in this process."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        status = main([str(argument) for argument in arguments])
+    return status, out.getvalue(), err.getvalue()
 
 
 def table(path: Path) -> list[dict[str, str]]:

@@ -12,7 +12,7 @@ from ..errors import ZSpringError, tell
 from ..figures import save
 from ..fmu import Fmu
 from ..parameter_sets import ACCURATE_STEP
-from ..records import Record, fill
+from ..records import Record, fill, keep_others
 from ..variables import Value, text
 from . import report
 from .files import Kept, frf_record, remaining, write_frf
@@ -37,6 +37,8 @@ def run_frf(
         raise ZSpringError(f"nothing to measure: all points need more stroke than {settings.stroke:g} m")
     parameters = all_parameters(fmu, settings)
     head = report.frf_head(fmu, settings, parameters, quantity)
+    csv_path, figure_path = folder / "frf.csv", folder / f"frf.{suffix}"
+    keep_others(csv_path, head)
     record = frf_record(folder / "frf.partial.csv", head, quantity)
     points, speed = _measure(fmu, settings, record, jobs, "step")
     records, errors = [record], None
@@ -49,7 +51,6 @@ def run_frf(
         errors = {key: error for key, error in estimates.items() if math.isfinite(error)}
 
     results = sorted([*points.values(), *left_out(settings)], key=lambda p: (p.amplitude, p.frequency))
-    csv_path, figure_path = folder / "frf.csv", folder / f"frf.{suffix}"
     write_frf(csv_path, head, results, quantity, errors)
     suspension = text(fmu.variables["suspension"], parameters["suspension"])
     bounds = report.linear_bounds(settings, parameters, linear=suspension == "Linear")

@@ -21,7 +21,8 @@ def linearize(pantograph, frequencies, output) -> None:
 
     Writes for each model linear-NAME.npz and .mat with M, C, K in SI units, the degrees of freedom in dof and
     unit, eigenvalues s (1/s), eigenvectors (columns; one of each conjugate pair), natural_frequencies and
-    head_held_frequencies (undamped, Hz), and the receptance -Z/F at the head (m/N) over frequency (Hz).
+    head_held_frequencies (undamped, Hz), the receptance -Z/F at the head (m/N) over frequency (Hz), and
+    all parameters as text in head.
     """
     with pantograph.opened(("suspension",)) as (fmu, parameters), claimed(output):
         import numpy as np

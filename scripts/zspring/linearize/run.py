@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 from scipy.io import savemat
 
 from ..fmu import Fmu
+from ..heads import file_head
 from ..receptance import MODELS, LinearModel, linear_model
-from ..variables import Value
+from ..records import keep_others
+from ..variables import Value, exact_list
 from .modes import NEGLIGIBLE, Modes, complex_modes, natural_frequencies
 
 TITLES = {
@@ -28,6 +31,10 @@ def run_linearize(fmu: Fmu, parameters: Mapping[str, Value], frequency: np.ndarr
     frequency   (n,) in Hz, > 0, of the receptance in the files
     """
     used = fmu.used_parameters(parameters)
+    head = file_head(fmu, used, {"frequencies": exact_list(frequency, "Hz")}, but_not=("drive", "suspension"))
+    for name in MODELS:
+        path = folder / f"linear-{name}.npz"
+        keep_others(path, head, _found_head(path))
     folder.mkdir(parents=True, exist_ok=True)
     synthetic = fmu.variables.synthetic(used)
     written = []
@@ -48,13 +55,24 @@ def run_linearize(fmu: Fmu, parameters: Mapping[str, Value], frequency: np.ndarr
             "frequency": frequency,
             "receptance": model.receptance(frequency),
         }
+        lines = [f"{key}: {value}" for key, value in head.items()]
         names, units = list(model.names), [UNITS[dof] for dof in model.names]
         paths = [folder / f"linear-{name}{suffix}" for suffix in (".npz", ".mat")]
-        np.savez(paths[0], dof=np.array(names), unit=np.array(units), **arrays)
-        cells = {"dof": np.array(names, dtype=object), "unit": np.array(units, dtype=object)}
+        np.savez(paths[0], dof=np.array(names), unit=np.array(units), head=np.array(lines), **arrays)
+        texts = {"dof": names, "unit": units, "head": lines}
+        cells = {key: np.array(value, dtype=object) for key, value in texts.items()}
         savemat(paths[1], {**arrays, **cells}, oned_as="column")
         written += paths
     print("written:", *written)
+
+
+def _found_head(path: Path) -> dict[str, str]:
+    """That of a file that run_linearize wrote; empty for another, or none."""
+    try:
+        with np.load(path) as file:
+            return dict(line.split(": ", 1) for line in file["head"].tolist())
+    except (OSError, ValueError, KeyError, BadZipFile):
+        return {}
 
 
 def _table(model: LinearModel, modes: Modes) -> list[str]:

@@ -13,8 +13,9 @@ from ..errors import ZSpringError
 from ..figures import save
 from ..fmu import Fmu
 from ..heads import file_head, synthetic_note
+from ..records import keep_others
 from ..tables import write_table
-from ..variables import Value, text
+from ..variables import Value, exact, exact_list, text
 from .animation import animation_html
 from .cycle import Cycle, simulate_cycle
 from .plot import mechanism_figure
@@ -43,12 +44,15 @@ def run_mechanism(
     for acceleration in accelerations:
         if acceleration > stroke * (2 * math.pi * frequency) ** 2 > 0:
             raise ZSpringError(f"{frequency:g} Hz at {acceleration:g} m/s2: needs more stroke than {1e3 * stroke:g} mm")
+    table, figure, page = (folder / f"mechanism.{kind}" for kind in ("csv", suffix, "html"))
+    listed = {name: value for name, value in used.items() if not name.startswith(("bench.", "drive"))}
+    own = {"frequency": f"{exact(frequency)} Hz", "accelerations": exact_list(accelerations, "m/s2")}
+    head = file_head(fmu, listed, own)
+    keep_others(table, head)
     with fmu.instances() as (instance,):
         cycles = [simulate_cycle(instance, parameters, frequency, acceleration) for acceleration in accelerations]
     magnifications = [magnification(cycle) for cycle in cycles]
-    table, figure, page = (folder / f"mechanism.{kind}" for kind in ("csv", suffix, "html"))
-    listed = {name: value for name, value in used.items() if not name.startswith(("bench.", "drive"))}
-    write_table(table, file_head(fmu, listed), _COLUMNS, (row for cycle in cycles for row in _rows(cycle)))
+    write_table(table, head, _COLUMNS, (row for cycle in cycles for row in _rows(cycle)))
     title = f"Linkage of the head suspension, seen from the upper frame{synthetic_note(fmu, used)}"
     save(mechanism_figure(cycles, magnifications, title), figure)
     about = f"A steady cycle at {frequency:g} Hz, simulated{synthetic_note(fmu, used)}."

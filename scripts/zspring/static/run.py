@@ -13,10 +13,13 @@ from ..figures import save
 from ..fmu import Fmu
 from ..heads import file_head, synthetic_note
 from ..interrupt import Interrupted, stop_on_interrupt
+from ..records import keep_others
 from ..tables import write_table
 from ..text_tables import aligned
-from ..variables import Value, text
+from ..variables import Value, exact_list, text
 from .plot import LAW_STYLES, static_figure
+
+STIFFNESS = "stiffness.csv"
 
 
 def run_static(
@@ -36,6 +39,8 @@ def run_static(
     suspension = text(fmu.variables["suspension"], used["suspension"])
     if suspension != "ZSpring":
         raise ZSpringError(f"suspension = {suspension}: must be ZSpring, the others have no friction")
+    head = _head(fmu, used, amplitudes, rates)
+    keep_others(folder / STIFFNESS, head)
     cases = [(law, rate, amplitude) for law in LAW_STYLES for rate in rates for amplitude in amplitudes]
     loops: list[Loop] = []
     with fmu.instances() as (instance,), stop_on_interrupt() as stop:
@@ -43,7 +48,7 @@ def run_static(
             loops.append(measure_loop(instance, parameters, *case))
             if stop.is_set():
                 break
-    paths = _write(fmu, used, loops, folder)
+    paths = _write(head, loops, folder)
     if len(loops) < len(cases):
         raise Interrupted(f"interrupted after {len(loops)} of {len(cases)} loops, kept in {folder}")
     paths.append(folder / f"static.{suffix}")
@@ -53,13 +58,17 @@ def run_static(
     print("written:", *paths)
 
 
-def _write(fmu: Fmu, used: Mapping[str, Value], loops: Sequence[Loop], folder: Path) -> list[Path]:
-    own = {"clamped frame": f"k2 = k3 = {CLAMP} N/m while measuring"}
-    listed = {
-        name: value for name, value in used.items() if name not in ("drive", "friction", "k2", "k3", "solver.step")
+def _head(fmu: Fmu, used: Mapping[str, Value], amplitudes: Sequence[float], rates: Sequence[float]) -> dict[str, str]:
+    own = {
+        "clamped frame": f"k2 = k3 = {CLAMP} N/m while measuring",
+        "amplitudes": exact_list(amplitudes, "m"),
+        "rates": exact_list(rates, "m/s"),
     }
-    head = file_head(fmu, listed, own)
-    stiffness, curves = folder / "stiffness.csv", folder / "loops.csv"
+    return file_head(fmu, used, own, but_not=("drive", "friction", "k2", "k3", "solver.step"))
+
+
+def _write(head: Mapping[str, str], loops: Sequence[Loop], folder: Path) -> list[Path]:
+    stiffness, curves = folder / STIFFNESS, folder / "loops.csv"
     key = ["friction", "rate [m/s]", "amplitude [m]"]
     write_table(
         stiffness,

@@ -14,7 +14,7 @@ from ..bench.loops import measure_loop
 from ..bench.measure import FAILED, NOT_SETTLED, REPEATS, FrfSettings, run_sweep, sweeps
 from ..bench.resonances import extremes
 from ..fmu import Instance
-from ..variables import Value, exact, parse, text
+from ..variables import Value, exact, exact_list, parse, text
 
 NOT_SETTLED_COLUMN = "not settled"
 
@@ -101,10 +101,7 @@ class StaticQuantity:
 
     def described(self) -> dict[str, str]:
         """Settings as text, by key."""
-        return {
-            "static amplitudes": " ".join(map(exact, self.amplitudes)) + " m",
-            "static rate": f"{exact(self.rate)} m/s",
-        }
+        return {"static amplitudes": exact_list(self.amplitudes, "m"), "static rate": f"{exact(self.rate)} m/s"}
 
     def measure(self, instance: Instance, parameters: Mapping[str, Value]) -> tuple[dict[str, float], list[str]]:
         """Values by column; FmuError if a step cannot be solved."""
