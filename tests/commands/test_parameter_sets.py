@@ -12,7 +12,16 @@ from commands import head, in_process, receptances, zspring
 from linear import PUBLISHED, LinearPantograph
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
-from zspring.parameter_sets import LINES, chosen_set, describe_set, find_set, packaged_sets, read_set, write_set
+from zspring.parameter_sets import (
+    LINES,
+    PANTOGRAPHS,
+    chosen_set,
+    describe_set,
+    find_set,
+    packaged_sets,
+    read_set,
+    write_set,
+)
 from zspring.receptance import receptance
 
 TABLES = {
@@ -236,6 +245,33 @@ def test_info_lists_the_sets_and_an_unknown_one_is_refused_with_them(tmp_path):
     assert all(name in err for name in packaged_sets())
     for name in [*packaged_sets(), *packaged_sets(LINES)]:
         assert re.search(rf"^  {name}$", out, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "more"), [("dsa-380", PANTOGRAPHS, []), ("benchmark-2015", LINES, ["--catenary"])]
+)
+def test_info_writes_a_set_to_edit_and_keeps_what_is_there(tmp_path, name, kind, more):
+    path = tmp_path / "mine.ssv"
+    command = ["info", "--sets", name, "--write", path, *more]
+    assert in_process(*command) == (0, f"written: {path}\n", "")
+    assert path.read_bytes() == packaged_sets(kind)[name].read_bytes()
+    path.write_text("edited")
+    assert in_process(*command) == (1, "", f"zspring: {path} exists and is kept: name another file\n")
+    assert path.read_text() == "edited"
+
+
+@pytest.mark.parametrize("names", [[], ["dsa-380", "dsa-250"], ["mine"], ["--catenary", "dsa-380"]])
+def test_info_writes_one_set_that_there_is(tmp_path, names):
+    status, _, err = in_process("info", "--sets", *names, "--write", tmp_path / "mine.ssv")
+    assert status == 1 and err.startswith("zspring: --write: needs --sets and the name of one set of ")
+    assert in_process("info", "dsa-380", "--write", tmp_path / "mine.ssv")[2] == err or "--catenary" in names
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_info_describes_the_sets_that_are_named(tmp_path):
+    status, out, _ = in_process("info", "--sets", "dsa-250")
+    assert status == 0 and out.splitlines()[:2] == ["Pantographs, for --parameters", "  dsa-250"] and "Lines" not in out
+    assert in_process("info", "--sets", "dsa250")[2].startswith("zspring: no set 'dsa250'; did you mean dsa-250")
 
 
 def test_the_two_mass_set_is_the_two_mass_model(model):

@@ -26,6 +26,7 @@ from commands import PNG, QUICK, begin, start, table, zspring
 from paths import ROOT
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
+from zspring.parameter_sets import write_set
 from zspring.receptance import receptance
 from zspring.study.cluster import LOST, _results
 from zspring.study.connection import connected
@@ -59,7 +60,7 @@ def own_fmu() -> Iterator[Fmu]:
 
 def study_of(text: str, fmu: Fmu, folder: Path) -> StudySettings:
     (folder / "study.toml").write_text(text)
-    return read_study(folder / "study.toml", fmu.variables)
+    return read_study(folder / "study.toml", fmu)
 
 
 def results(path: Path) -> list[dict[str, str]]:
@@ -359,6 +360,20 @@ def test_a_case_that_kills_workers_is_given_up_and_no_other(own_fmu):
     assert found[5]["status"] == LOST
 
 
+# Settings
+
+
+def test_a_study_takes_a_set_from_the_package_or_beside_its_file(own_fmu, tmp_path):
+    """What is varied or in [set] goes before the set, and the bench's own before all."""
+    values = own_fmu.variables.parse_assignments(["m1=7.5", "m2=6.5", "zspring.k=1", "drive=Wire"])
+    write_set(tmp_path / "mine.ssv", own_fmu, values, "mine", "")
+    text = QUICK.replace("[vary]", 'parameters = "mine.ssv"\n[set]\nm2 = 5\n[vary]')
+    common = study_of(text, own_fmu, tmp_path).common
+    assert (common["m1"], common["m2"]) == (7.5, 5.0) and not {"zspring.k", "drive"} & common.keys()
+    common = study_of(text.replace("mine.ssv", "dsa-250"), own_fmu, tmp_path).common
+    assert (common["m1"], common["m2"], common["k2"]) == (7.51, 5.0, 6200.0)
+
+
 # Bad input
 
 
@@ -402,6 +417,7 @@ def test_a_case_that_kills_workers_is_given_up_and_no_other(own_fmu):
         (("[1, 4]", "[1, 4]\nmin_periods = 2.5"), ["[frf] min_periods = 2.5: must be a whole number"]),
         (("[1, 4]", '[1, 4]\ndirection = "left"'), ['[frf] direction = \'left\': must be "up", "down" or "rest"']),
         (("[frf]", "[static]\nrate = 1\n[frf]"), ["[static] amplitudes is missing"]),
+        (("[vary]", 'parameters = "mine.ssv"\n[vary]'), ["mine.ssv: no such file"]),
     ],
 )
 def test_a_bad_study_is_refused_with_one_clear_line(own_fmu, tmp_path, change, named):

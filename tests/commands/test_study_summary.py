@@ -22,6 +22,7 @@ from zspring.study.report import (
     SobolIndices,
     envelopes,
     incomplete_blocks,
+    sobol_doubts,
     sobol_indices,
     sobol_table,
     spread_table,
@@ -90,7 +91,12 @@ def test_indices_are_printed_and_written_by_parameter(tmp_path):
     lines = sobol_table(TWO, found)
     assert [line.split() for line in lines] == [
         ["first", "/", "total", "order", "m1", "m2"],
-        ["y", "0.70", "/", "0.75", "0.25", "/", "0.30"],
+        ["y", *"0.70 ± 0.01 / 0.75 ± 0.03".split(), *"0.25 ± 0.02 / 0.30 ± 0.04".split()],
+    ]
+    assert sobol_doubts(found) == []
+    wide = SobolIndices("z", *map(np.array, ([0.1, 0.01], [0.2, 0.04], [0.1, 0.3], [0.09, 0.31])))
+    assert sobol_doubts([*found, wide]) == [
+        "2 of 8 Sobol indices are smaller than their 95 % confidence: they need more samples"
     ]
     write_sobol(tmp_path / "sobol.csv", {"design": "sobol"}, TWO, found)
     _, _, *rows = csv.reader(line for line in (tmp_path / "sobol.csv").read_text().splitlines() if line)

@@ -48,6 +48,7 @@ def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path) 
         design = "sobol"           # grid, list, latin-hypercube or sobol
         samples = 64               # sobol: N for N (D + 2) cases
         seed = 1
+        parameters = "dsa-380-zspring"  # what is not varied, from a set or an SSV file
         [vary]                     # parameters of the FMU, in its units
         zspring.k = { from = 12000, to = 14000 }
         zspring.Mf = { from = 0.2, to = 0.4, scale = "log" }

@@ -18,6 +18,7 @@ from .settings import StudySettings
 from .workers import OK
 
 PERCENTILES = (0, 5, 50, 95, 100)
+NEGLIGIBLE = 0.05  # of a Sobol index
 
 Rows = Mapping[int, Mapping[str, str]]
 
@@ -100,10 +101,22 @@ def incomplete_blocks(settings: StudySettings, rows: Rows) -> int:
 
 
 def sobol_table(settings: StudySettings, found: Sequence[SobolIndices]) -> list[str]:
-    """Lines with first and total order index by result and parameter."""
+    """Lines with first and total order index and their 95 % confidence by result and parameter."""
     rows = [["first / total order", *settings.vary]]
-    rows += [[i.column, *(f"{a:.2f} / {b:.2f}" for a, b in zip(i.first, i.total))] for i in found]
+    for i in found:
+        numbers = zip(i.first, i.first_confidence, i.total, i.total_confidence)
+        rows.append([i.column, *(f"{a:.2f} ± {b:.2f} / {c:.2f} ± {d:.2f}" for a, b, c, d in numbers)])
     return aligned(rows, right=True)
+
+
+def sobol_doubts(found: Sequence[SobolIndices]) -> list[str]:
+    """A line if indices are less than their uncertainty; those that are 0 within NEGLIGIBLE do not count."""
+    index = np.concatenate([np.concatenate([i.first, i.total]) for i in found])
+    half_width = np.concatenate([np.concatenate([i.first_confidence, i.total_confidence]) for i in found])
+    wide = int(np.sum(half_width > np.maximum(np.abs(index), NEGLIGIBLE)))
+    if not wide:
+        return []
+    return [f"{wide} of {index.size} Sobol indices are smaller than their 95 % confidence: they need more samples"]
 
 
 def write_sobol(path: Path, head: Mapping[str, str], settings: StudySettings, found: Sequence[SobolIndices]) -> None:

@@ -34,7 +34,7 @@ def run_study(
     Raises ZSpringError for a bad study, a missing scheduler, or when no case came out whole; Interrupted
     after Ctrl-C. Finished cases are kept.
     """
-    settings = read_study(path, fmu.variables)
+    settings = read_study(path, fmu)
     cases = make_cases(settings)
     parameters = _all_parameters(fmu, settings, cases)
     record = StudyRecord(
@@ -110,7 +110,7 @@ def _write_results(
     if settings.design == "sobol":
         found = report.sobol_indices(settings, scalars, rows)
         if found:
-            lines += report.sobol_table(settings, found)
+            lines += [*report.sobol_table(settings, found), *report.sobol_doubts(found)]
             written += [folder / "sobol.csv", folder / f"sobol.{suffix}"]
             report.write_sobol(written[-2], record.head, settings, found)
             save(sobol_figure(found, list(settings.vary), title), written[-1])

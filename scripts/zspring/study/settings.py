@@ -14,9 +14,10 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, Str
 from ..bench.measure import BENCH_PARAMETERS, FrfSettings
 from ..bench.steady import LOOK_PERIODS
 from ..errors import ZSpringError
+from ..fmu import Fmu
 from ..options import Numbers
-from ..parameter_sets import ACCURATE_STEP
-from ..settings import ALL_FREQUENCIES, Band, Positive, Table, by_full_name, fitting, named, settings_of
+from ..parameter_sets import ACCURATE_STEP, PANTOGRAPHS, chosen_set
+from ..settings import ALL_FREQUENCIES, Band, Positive, Table, by_full_name, fitting, named, set_name, settings_of
 from ..variables import Value, Variables, text
 from .evaluations import FrfQuantity, Quantity, StaticQuantity
 
@@ -116,6 +117,7 @@ class _File(Table):
     design: Literal["grid", "list", "latin-hypercube", "sobol"]
     samples: int = Field(0, ge=1, description="of sampled designs")
     seed: int = Field(1, ge=0, description="of sampled designs")
+    parameter_set: Annotated[str, set_name(PANTOGRAPHS)] = Field("", alias="parameters")
     vary: Annotated[dict[str, RangeOrValues], by_full_name(Range)] = Field({}, min_length=1, validate_default=True)
     common: Annotated[dict[str, Any], by_full_name()] = Field({}, alias="set")
     frf: _Frf | None = None
@@ -165,13 +167,16 @@ class StudySettings:
         return head
 
 
-def read_study(path: Path, variables: Variables) -> StudySettings:
+def read_study(path: Path, fmu: Fmu) -> StudySettings:
     """The study of a TOML file. Raises ZSpringError with the file and the key, or the line of bad syntax."""
+    variables = fmu.variables
     with settings_of(path, _File, brackets=True) as file:
         with named("[set] "):
             common = {name: _value(variables, name, value) for name, value in file.common.items()}
         with named("[vary] "):
             vary = {name: _varied(variables, name, value, file.design) for name, value in file.vary.items()}
+        if file.parameter_set:
+            common = {**chosen_set(file.parameter_set, fmu, but_not=(*BENCH_PARAMETERS, *vary)), **common}
         if "solver.step" not in vary:
             common = {"solver.step": ACCURATE_STEP, **common}
         lengths = {name: len(values) for name, values in vary.items() if not isinstance(values, Range)}
