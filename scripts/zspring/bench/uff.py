@@ -138,8 +138,9 @@ def _curve(file: UniversalFile, data: DataSet, factors: DataSet | None, amplitud
         frequency = np.array([float(f"{f:.6g}") for f in frequency])
     kept = frequency > 0  # a static line says nothing about a response over acceleration
     frequency, value = frequency[kept], value[kept]
-    if not np.all(np.isfinite(x)) or not frequency.size or np.any(np.diff(frequency) <= 0):
-        raise ZSpringError("the frequencies must increase")
+    steps = np.diff(frequency)
+    if not np.all(np.isfinite(x)) or not frequency.size or not (np.all(steps > 0) or np.all(steps < 0)):
+        raise ZSpringError("the frequencies must all rise or all fall")
     wrong = np.flatnonzero(~np.isfinite(value) | (value == 0))
     if wrong.size:
         raise ZSpringError(f"the response at {frequency[wrong[0]]:g} Hz is {value[wrong[0]]}")
