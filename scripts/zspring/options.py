@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.resources
 import math
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -60,6 +61,21 @@ class WholeNumbers(click.ParamType):
         if not all(isinstance(part, int) or (part.isdecimal() and int(part) > 0) for part in parts):
             self.fail(f"{value!r}: must be whole numbers from 1, as 1,3", param, ctx)
         return tuple(map(int, parts))
+
+
+class Spans(click.ParamType):
+    """N or FIRST:LAST, counted from 1."""
+
+    name = "spans"
+
+    def convert(self, value, param, ctx) -> tuple[int, int]:
+        if isinstance(value, tuple):
+            return value
+        found = re.fullmatch(r"(\d+)(?::(\d+))?", value.strip())
+        first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
+        if not 1 <= first <= last:
+            self.fail(f"{value!r}: must be N or FIRST:LAST, counted from 1", param, ctx)
+        return first, last
 
 
 FILE = click.Path(path_type=Path, dir_okay=False)

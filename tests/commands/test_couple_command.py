@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import re
 import signal
 import sys
 import threading
@@ -43,7 +44,7 @@ def zspring(tmp_path, monkeypatch, capsys) -> Callable[..., str]:
 
 def test_a_run_writes_series_with_units_and_a_figure(zspring, tmp_path):
     settings = ["--speed", "200", "--pantographs", "2", "--spacing", "35", "--start", "70"]
-    settings += ["--set", "friction=Coulomb", "--tension", "22000", "18000", "--mean-force", "DC-3kV"]
+    settings += ["--set", "friction=Coulomb", "--tension", "22000", "18000", "--uplift", "28.8"]
     out = zspring(*SHORT, *settings, "--parquet", "--output", "out")
     assert "mean force" in out and "written: out/line.csv out/line.parquet out/line.png" in out
     result = read_result(tmp_path / "out/line.csv")
@@ -56,13 +57,29 @@ def test_a_run_writes_series_with_units_and_a_figure(zspring, tmp_path):
     assert settings["catenary messenger.tension"] == "18000 N"
     assert settings["pantograph 2 friction"] == "Coulomb"
     assert settings["speed"] == "200 km/h" and settings["spacing"] == "35 m"
-    # 0.00097 * 200^2 + 110 - 120
     assert settings["uplift"] == "28.8 N on upper_frame"
     assert settings["catenary FMU"].startswith("Catenary") and settings["pantograph 1 GUID"]
     assert (tmp_path / "out/line.png").read_bytes().startswith(b"\x89PNG")
     parquet = read_result(tmp_path / "out/line.parquet")
     assert parquet.contact_force == pytest.approx(result.contact_force, rel=1e-8)
     assert parquet.settings == settings
+
+
+def test_each_pantograph_has_the_mean_force_that_is_asked_for(zspring, tmp_path):
+    """0.00097 * 200^2 + 110 = 148.8 N over the spans that the summary names, by the mean of the rows there."""
+    settings = ["--speed", "200", "--pantographs", "2", "--spacing", "35", "--start", "70", "--stop", "245"]
+    settings += ["--set-line", "line.spans=6", "--step", "0.002", "--parameters", "benchmark-2015"]
+    out = zspring(*settings, "--mean-force", "DC-3kV", "--output", "out").splitlines()
+    assert out[0].startswith("mean force DC-3kV at 200 km/h: target 148.8 N, reached 148.")
+    assert out[1] == "0-20 Hz, over span 4, 180 to 240 m and span 3, 120 to 180 m"
+    result = read_result(tmp_path / "out/line.csv")
+    uplifts = [float(text) for text in result.settings["uplift"].split(" N")[0].split(", ")]
+    assert len(uplifts) == 2 and all(uplift > 148.8 - 120 + 1 for uplift in uplifts)  # k3 carries a part
+    printed = re.findall(r"uplift of (\S+) N", out[0])
+    assert [float(text) for text in printed] == pytest.approx(uplifts, abs=0.05)
+    for i, begin in enumerate((180.0, 120.0)):
+        inside = (result.position[:, i] >= begin) & (result.position[:, i] < begin + 60.0)
+        assert result.contact_force[inside, i].mean() == pytest.approx(148.8, abs=0.5)
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from zspring.couple.report import evaluated, summary
+from zspring.couple.report import evaluated, sections, summary
 from zspring.en50318.edition import packaged_edition, read_edition
 from zspring.en50318.plan import CHOICES, HEADS, Run, head_runs, reference_runs, section_of, sensitivity_runs, slug
 from zspring.errors import ZSpringError
@@ -132,24 +132,28 @@ def test_the_middle_spans_are_evaluated(spans, middle):
     assert evaluated(result, 0, LineExtent(spans, 50.0)) == Section(*middle, 50.0)
 
 
-def test_a_pantograph_that_has_not_run_through_the_middle_after_a_span_of_start_up_is_evaluated_whole():
+def test_a_pantograph_that_has_not_run_through_the_middle_is_evaluated_over_its_last_whole_spans():
+    """The first span after the start does not count; None: there is no whole one."""
     line = LineExtent(6, 50.0)  # the middle is from 100 to 200 m
     for begin, end, second, first, other in (
-        (40.0, 210.0, 0.0, True, True),
-        (50.0, 200.0, 0.0, True, True),
-        (51.0, 210.0, 0.0, False, False),
-        (40.0, 199.0, 0.0, False, False),
-        (40.0, 210.0, 20.0, True, False),
+        (40.0, 210.0, 0.0, (3, 4), (3, 4)),
+        (50.0, 200.0, 0.0, (3, 4), (3, 4)),
+        (51.0, 210.0, 0.0, (4, 4), (4, 4)),
+        (40.0, 199.0, 0.0, (3, 3), (3, 3)),
+        (40.0, 210.0, 20.0, (3, 4), (3, 3)),
+        (51.0, 199.0, 0.0, None, None),
     ):
         result = passage(begin, end, second)
-        assert [bool(evaluated(result, i, line)) for i in (0, 1)] == [first, other]
+        expected = [spans and Section(*spans, 50.0) for spans in (first, other)]
+        assert [evaluated(result, i, line) for i in (0, 1)] == expected
 
 
 def test_the_summary_has_the_figures_of_each_pantograph():
-    lines = summary(passage(40.0, 210.0, 20.0), LineExtent(6, 50.0))
-    assert lines[0] == "0-20 Hz, over spans 3 to 4, 100 to 200 m and the whole run"
+    result = passage(40.0, 210.0, 20.0)
+    lines = summary(result, sections(result, LineExtent(6, 50.0), None))
+    assert lines[0] == "0-20 Hz, over spans 3 to 4, 100 to 200 m and span 3, 100 to 150 m"
     rows = {line[:27].strip(): line[27:].split() for line in lines[1:]}
     assert rows["mean force"] == ["100.0", "110.0", "N"]
     assert rows["largest uplift at a support"] == ["33.0", "33.0", "mm"]
     assert rows["loss of contact"] == ["0.00", "0.00", "%"]
-    assert rows["range of the contact point"] == ["20.0", "20.0", "mm"]
+    assert rows["range of the contact point"] == ["20.0", "10.0", "mm"]

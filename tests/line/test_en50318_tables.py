@@ -204,10 +204,10 @@ def test_a_series_is_told_span_by_span_where_there_are_several(first, last, tabl
 
 def test_the_spans_asked_for_go_before_those_of_the_case():
     data = OwnData(Path("a"), None, EDITION, None, None, (3, 4), 65.0, 10.0, 1)
-    assert data.section(None, None) == Section(3, 4, 65.0, 10.0)
+    assert data.section(None, None, []) == Section(3, 4, 65.0, 10.0)
     assert Section(3, 4, 65.0, 10.0).bounds == (140.0, 270.0)
     whole = OwnData(Path("a"), None, EDITION, None, None, None, 65.0, 10.0, 1)
-    assert whole.section(None, None) is None
+    assert whole.section(None, None, []) is None
 
 
 # Frequency responses

@@ -46,7 +46,7 @@ def test_runs_go_from_half_a_span_inside_to_half_a_span_inside():
 def test_the_ends_of_what_is_allowed_are_allowed(changed, count):
     found = LINE.complete(Journey(**{**RUN, **changed}), count)
     for name, value in changed.items():
-        assert getattr(found, name) == value
+        assert getattr(found, name) == ((value,) if name == "uplift" else value)
 
 
 @pytest.mark.parametrize(
@@ -62,6 +62,8 @@ def test_the_ends_of_what_is_allowed_are_allowed(changed, count):
         ({"speed": -50.0}, 1, "speed = -50 m/s: must be above 0"),
         ({"step": math.inf}, 1, "step = inf s"),
         ({}, 0, "0 pantographs: must be 1 or 2"),
+        ({"uplift": (1.0, 2.0)}, 1, "2 uplifts for 1 pantographs"),
+        ({"uplift": (1.0, math.inf), "start": 90.0, "spacing": 40.0}, 2, "uplift = inf N"),
     ],
 )
 def test_what_is_just_beyond_them_is_not(changed, count, told):

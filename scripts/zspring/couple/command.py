@@ -8,11 +8,12 @@ import click
 
 from ..errors import ZSpringError
 from ..fmu import CATENARY, installed_fmu
-from ..line.journey import MASSES, START_UPS, Journey, parameter_value
+from ..line.journey import MASSES, START_UPS, Journey
 from ..line.mean_force import STANDING, mean_force
 from ..line.schemes import DRIVES, SCHEMES, Coupling
 from ..line.system import System
 from ..options import (
+    Spans,
     choice,
     chosen_parameters,
     format_option,
@@ -56,8 +57,9 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
     "--mean-force",
     "supply",
     of=STANDING,
-    help="Choose the uplift so that static_force and uplift together are the target mean force of the "
-    "standards for this supply and speed. At low speeds the uplift may be negative.",
+    help="Choose the uplift of each pantograph so that its mean force over the evaluated spans is the target of the "
+    "standards for this supply and speed, to 0.1 N, by as many runs as that takes. At low speeds the uplift may be "
+    "negative.",
 )
 @choice(
     "--uplift-on",
@@ -68,6 +70,12 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
 )
 @option("--start", metavar="X", help="Of the first pantograph in m.  [default: half a span]")
 @option("--stop", metavar="X", help="Where the first pantograph ends, in m.  [default: half a span before the end]")
+@option(
+    "--spans",
+    kind=Spans(),
+    metavar="FIRST:LAST",
+    help="Spans to evaluate.  [default: the middle ones; where the far end reflects into them, the last two before]",
+)
 @choice(
     "--start-up",
     of=START_UPS,
@@ -117,6 +125,7 @@ def couple(pantograph, output, suffix, **given) -> None:
         given |= {"scheme": "jacobi", "drive": "Wire", "start_up": "direct"}
     coupling = Coupling(given["scheme"], given["drive"], given["tolerance"])
 
+    spans = given["spans"]
     with (
         opened(given["line_fmu"] or installed_fmu(CATENARY)) as catenary,
         pantograph.opened(("drive",)) as (fmu, parameters),
@@ -124,16 +133,16 @@ def couple(pantograph, output, suffix, **given) -> None:
         line = chosen_parameters(catenary, given["line_set"], given["line_assignments"], SET_HERE, LINES)
         if given["tension"]:
             line |= dict(zip(("contact_wire.tension", "messenger.tension"), given["tension"]))
-        if supply:
-            uplift = mean_force(supply, speed) - parameter_value(fmu, parameters, "static_force")
         where = {name: given[name] for name in ("start", "stop", "step", "spacing", "start_up", "uplift_on")}
         journey = Journey(speed / 3.6, uplift=uplift or 0.0, **where)
         system = System(catenary, fmu, line, [parameters] * given["count"], journey, coupling)
+        aim = run.Aim(mean_force(supply, speed), f"{supply} at {speed:g} km/h", spans) if supply else None
         if ssp_path:
-            run.export_ssp(system, ssp_path)
+            run.export_ssp(run.aimed(system, aim) if aim else system, ssp_path)
             return
+        what = f"Line {given['line_set'] or 'of the FMU'}, pantograph {pantograph.parameter_set or 'of the FMU'}"
         with claimed(output):
             if given["compare_steps"]:
-                run.compare_and_write(system, output, suffix)
+                run.compare_and_write(run.aimed(system, aim) if aim else system, output, suffix, what)
             else:
-                run.run_and_write(system, output, suffix, given["parquet"])
+                run.run_and_write(system, output, suffix, given["parquet"], aim, spans, what)

@@ -35,8 +35,11 @@ def line_figure(result: LineResult, filtered: np.ndarray | None, title: str) -> 
         axes.grid(True, axis="y", linewidth=0.4, alpha=0.5)
         for support in result.support_position:
             axes.axvline(support, color="0.8", linewidth=0.8, zorder=0)
+        if felt := [until for until, end in zip(result.undisturbed_until, result.position[-1]) if until < end]:
+            axes.axvspan(min(felt), result.position.max(), color="0.92", zorder=-1)
     panels[0].set_title(title)
-    panels[-1].set_xlabel("position along the line  [m], supports as vertical lines")
+    grey = "; grey: the far end's reflection is felt" if np.any(result.undisturbed_until < result.position[-1]) else ""
+    panels[-1].set_xlabel(f"position along the line  [m], supports as vertical lines{grey}")
     panels[-1].set_xlim(result.position.min(), result.position.max())
     return figure
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
+from ..errors import ZSpringError
 from ..line.journey import LineExtent
 from ..line.result import LineResult
 from ..line.statistics import FIGURES, Section, statistics
@@ -19,24 +23,52 @@ SHOWN = (
 
 
 def evaluated(result: LineResult, i: int, line: LineExtent) -> Section | None:
-    """The middle spans of the line, farthest from its ends; None where pantograph i has not run through them.
+    """The middle spans of the line, farthest from its ends, or the last two whole spans before the far end is felt.
 
-    The first span after the start does not count, as the start-up is there.
+    None where pantograph i runs through no whole span there. The first span after the start does not count, as the
+    start-up is there.
     """
-    section = Section((line.spans + 1) // 2, line.spans // 2 + 1, line.span)
-    low, high = section.bounds
-    begin, end = result.position[0, i] + line.span, result.position[-1, i]
-    return section if begin <= low and high <= end else None
+    begin, end = result.position[0, i] + line.span, min(result.position[-1, i], result.undisturbed_until[i])
+    middle = Section((line.spans + 1) // 2, line.spans // 2 + 1, line.span)
+    low, high = middle.bounds
+    if begin <= low and high <= end:
+        return middle
+    first, last = math.ceil(begin / line.span - 1e-9) + 1, math.floor(end / line.span + 1e-9)
+    return Section(max(first, last - 1), last, line.span) if first <= last else None
 
 
-def summary(result: LineResult, line: LineExtent) -> list[str]:
-    """Lines with the main figures of each pantograph."""
-    count = result.position.shape[1]
-    sections = [evaluated(result, i, line) for i in range(count)]
-    found = [statistics(result.series(i), sections[i]) for i in range(count)]
-    where = dict.fromkeys(str(section or "the whole run") for section in sections)
+def sections(result: LineResult, line: LineExtent, spans: tuple[int, int] | None) -> list[Section | None]:
+    """What is evaluated of each pantograph: the spans asked for, else those of `evaluated`; None: the whole run.
+
+    Raises ZSpringError where that would be nothing but start-up and what the far end reflects.
+    """
+    if spans:
+        return [Section(*spans, line.span)] * result.position.shape[1]
+    found = [evaluated(result, i, line) for i in range(result.position.shape[1])]
+    for i, until in enumerate(result.undisturbed_until):
+        if found[i] is None and result.position[-1, i] > until:
+            raise ZSpringError(
+                f"no whole span between {result.position[0, i] + line.span:.4g} m, a span after the start, and "
+                f"{until:.4g} m, where the far end begins to tell: take a longer line (line.spans), or choose --spans"
+            )
+    return found
+
+
+def summary(result: LineResult, chosen: Sequence[Section | None]) -> list[str]:
+    """Lines with the main figures of each pantograph over its section. Raises ZSpringError where there are none."""
+    found = [statistics(result.series(i), section) for i, section in enumerate(chosen)]
+    where = dict.fromkeys(str(section or "the whole run") for section in chosen)
     rows = []
     for name in SHOWN:
         label, unit, digits = FIGURES[name]
         rows.append([label, *(f"{figures[name]:.{digits}f}" for figures in found), unit])
-    return [f"0-20 Hz, over {' and '.join(where)}", *aligned(rows, right=True)]
+    return [f"0-20 Hz, over {' and '.join(where)}", *aligned(rows, right=True), *_far_end(result)]
+
+
+def _far_end(result: LineResult) -> list[str]:
+    """A line on where the far end begins to tell, if a run goes there."""
+    reached = [until for until, end in zip(result.undisturbed_until, result.position[-1]) if end > until]
+    if not reached:
+        return []
+    where = dict.fromkeys(f"{until:.0f} m" for until in reached)
+    return [f"from {' and '.join(where)} on forces are not those of a longer line: the far end reflects the start"]

@@ -2,64 +2,120 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import astuple, replace
+from collections.abc import Callable, Mapping
+from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 
 from tqdm import tqdm
 
-from ..errors import ZSpringError
+from ..errors import ZSpringError, tell
 from ..figures import save
 from ..heads import synthetic_note
 from ..interrupt import Interrupted
+from ..line.limits import near_wave_speed, of_series
+from ..line.mean_force import uplifts_for
 from ..line.result import LineResult, write_result
-from ..line.run import LineRun
+from ..line.run import LineRun, run_line
 from ..line.schemes import Coupling
-from ..line.statistics import low_pass
+from ..line.statistics import low_pass, statistics
 from ..line.system import System
 from ..tables import write_table
 from ..variables import Value
 from .compare import STEPS, compare_steps, compared, comparison_table
 from .plot import comparison_figure, line_figure
-from .report import summary
+from .report import sections, summary
 from .ssp import write_ssp
 
 Parameters = Mapping[str, Value]
 
 
-def run_and_write(system: System, folder: Path, suffix: str, parquet: bool) -> None:
+@dataclass(frozen=True)
+class Aim:
+    """The mean force that a run is to have, over its evaluated spans, by the uplifts."""
+
+    force: float  # N
+    name: str  # of the law, and its speed
+    spans: tuple[int, int] | None = None  # evaluated; None: those of the summary
+
+
+def aimed(system: System, aim: Aim, run: Callable[[System], LineResult] = run_line) -> System:
+    """The system with the uplifts that give each pantograph the mean force, found by runs; tells what they gave.
+
+    Raises ZSpringError where none do, or where no whole span is evaluated; and what `run` raises.
+    """
+    reached: list[float] = []
+
+    def means(uplifts: tuple[float, ...]) -> list[float]:
+        result = run(replace(system, journey=replace(system.journey, uplift=uplifts)))
+        chosen = sections(result, system.extent, aim.spans)
+        if None in chosen:
+            raise ZSpringError("--mean-force: the run goes through no whole span after the first one")
+        reached[:] = [statistics(result.series(i), section)["mean_force"] for i, section in enumerate(chosen)]
+        return reached
+
+    uplifts = uplifts_for(aim.force, [aim.force - force for force in system.of_each("static_force")], means)
+    one = [f"{mean:.1f} N with an uplift of {uplift:.1f} N" for mean, uplift in zip(reached, uplifts)]
+    print(f"mean force {aim.name}: target {aim.force:.1f} N, reached {' and '.join(one)}")
+    return replace(system, journey=replace(system.journey, uplift=uplifts))
+
+
+def run_and_write(
+    system: System,
+    folder: Path,
+    suffix: str,
+    parquet: bool,
+    aim: Aim | None = None,
+    spans: tuple[int, int] | None = None,
+    what: str = "",
+) -> None:
     """Run along the line and write line.csv, perhaps line.parquet, and the figure line.<suffix>.
 
+    spans   to evaluate; None: those of the summary
+    what    of the line and the pantograph, for the title
     Raises Interrupted after Ctrl-C and ZSpringError where the run cannot go on; the rows so far are kept.
     """
-    path = folder / "line.csv"
-    with LineRun(system) as run:
-        try:
-            run.finish(progress=True)
-        except (Interrupted, ZSpringError) as error:
-            write_result(run.result(), path)
-            raise type(error)(f"{error}; the rows so far are kept in {path}") from None
-        result, extent, wire_steps = run.result(), run.line, run.wire_steps
+    path, made = folder / "line.csv", list[LineRun]()
+
+    def finished(system: System) -> LineResult:
+        with LineRun(system) as run:
+            try:
+                run.finish(progress=True)
+            except (Interrupted, ZSpringError) as error:
+                write_result(run.result(), path)
+                raise type(error)(f"{error}; the rows so far are kept in {path}") from None
+            made[:] = [run]
+            return run.result()
+
+    if aim:
+        system = aimed(system, aim, finished)
+    else:
+        finished(system)
+    (run,) = made
+    result, extent = run.result(), run.line
     written = [path, *([folder / "line.parquet"] if parquet else []), folder / f"line.{suffix}"]
     for file in written[:-1]:
         write_result(result, file)
+    remarks = near_wave_speed(system.catenary, system.line, system.journey.speed)
     try:
         filtered = low_pass(result.contact_force, system.journey.step)
-        print(*summary(result, extent), sep="\n")
+        chosen = sections(result, extent, spans)
+        print(*summary(result, chosen), sep="\n")
+        remarks += [line for i, section in enumerate(chosen) for line in of_series(result.series(i), section)]
     except ZSpringError as error:
         filtered = None
         print(f"no statistics: {error}")
-    save(line_figure(result, filtered, _title(result, system)), written[-1])
+    tell(remarks, path)
+    save(line_figure(result, filtered, _title(result, system, what)), written[-1])
     duration = result.time[-1]
     print(
-        f"{len(result.time) - 1} communication steps, each of {wire_steps:.2f} steps of the catenary\n"
+        f"{len(result.time) - 1} communication steps, each of {run.wire_steps:.2f} steps of the catenary\n"
         f"{duration:.3g} s of line in {result.elapsed:.2f} s, {duration / result.elapsed:.1f} times faster than "
         "real time"
     )
     print("written:", *written)
 
 
-def compare_and_write(system: System, folder: Path, suffix: str) -> None:
+def compare_and_write(system: System, folder: Path, suffix: str, what: str = "") -> None:
     """Compare communication steps; write steps.csv and the figure steps.<suffix>.
 
     Raises ZSpringError where the run is too short for it.
@@ -97,7 +153,7 @@ def compare_and_write(system: System, folder: Path, suffix: str) -> None:
     print(*comparison_table(rows), sep="\n")
     if stopped:
         raise type(stopped)(f"{stopped}; the rows so far are kept in {paths[0]}")
-    save(comparison_figure(rows, f"Coupling at {speed}"), paths[1])
+    save(comparison_figure(rows, f"Coupling at {speed}; {what}"), paths[1])
     print("written:", *paths)
 
 
@@ -108,10 +164,12 @@ def export_ssp(system: System, path: Path) -> None:
     print("written:", path)
 
 
-def _title(result: LineResult, system: System) -> str:
+def _title(result: LineResult, system: System, what: str) -> str:
     settings, variables = result.settings, system.pantograph.variables
-    title = f"{settings['speed']}, {settings['coupling']} coupling, step {settings['step']}"
+    suspension, friction = (settings[f"pantograph 1 {name}"] for name in ("suspension", "friction"))
+    head = f"{friction} friction" if suspension == "ZSpring" else f"suspension {suspension}"
     names = variables.names("parameter")
     sets = [dict(zip(names, values)) for values in zip(*(system.of_each(name) for name in names))]
     notes = {synthetic_note(system.pantograph, used) for used in sets}
-    return title + max(notes, key=len)
+    numerics = f"{settings['coupling']} coupling, step {settings['step']}{max(notes, key=len)}"
+    return f"{what}, {head}, {settings['speed']}\n{numerics}"

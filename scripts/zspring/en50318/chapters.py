@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..fmu import Fmu
+from ..line.limits import near_wave_speed, of_series
 from ..line.result import read_result
 from ..line.series import Series
 from ..line.statistics import Statistics, statistics
@@ -14,6 +15,7 @@ from . import plot, report
 from .edition import Edition, Judgement, judge
 from .page import Chapter, Picture, Table
 from .plan import HEAD_LINE, Run, slug
+from .workers import Finished
 
 FILTERS = {  # order of the two-pass filter, by what the tables call it
     "filter of order 2": 2,
@@ -29,6 +31,7 @@ class Outcome:
     runs: Sequence[Run]
     series: Sequence[Series]
     found: Sequence[Statistics]
+    uplifts: Sequence[float]  # N
 
     @property
     def judged(self) -> dict[str, list[Judgement]]:
@@ -36,11 +39,28 @@ class Outcome:
         cases = zip(self.edition.cases, self.found)
         return {case.title: judge(found, case.ranges) for case, found in cases}
 
+    def remarks(self, catenary: Fmu) -> list[str]:
+        """Lines on mean forces that were aimed at, and on what the line's model is not good for."""
+        lines = []
+        for case, run, series, found, uplift in zip(
+            self.edition.cases, self.runs, self.series, self.found, self.uplifts
+        ):
+            if run.mean_force is not None:
+                lines.append(
+                    f"{case.title}: mean force of {case.supply} lines at {case.speed:g} km/h: target "
+                    f"{run.mean_force:.1f} N, reached {found['mean_force']:.1f} N with a static force of "
+                    f"{case.static_force:.1f} N and an uplift of {uplift:.1f} N on the upper frame"
+                )
+            limits = near_wave_speed(catenary, run.line, run.speed / 3.6) + of_series(series, run.section)
+            lines += [f"{case.title}: {line}" for line in limits]
+        return lines
 
-def outcome(edition: Edition, runs: Sequence[Run], found: Mapping[str, Statistics], folder: Path) -> Outcome:
+
+def outcome(edition: Edition, runs: Sequence[Run], done: Mapping[str, Finished], folder: Path) -> Outcome:
     """What the runs of an edition came to; their series are read from the folder."""
     results = [read_result(folder / run.series).series(0) for run in runs]
-    return Outcome(edition, runs, results, [found[run.key] for run in runs])
+    finished = [done[run.key] for run in runs]
+    return Outcome(edition, runs, results, [each.statistics for each in finished], [each.uplift for each in finished])
 
 
 def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:

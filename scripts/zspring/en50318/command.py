@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import click
@@ -12,6 +11,7 @@ from ..fmu import CATENARY, installed_fmu
 from ..options import (
     FILE,
     POSITIVE,
+    Spans,
     WholeNumbers,
     choice,
     copy_examples,
@@ -26,21 +26,6 @@ from ..options import (
 from ..records import claimed
 
 EDITIONS = ("en-50318-2002", "benchmark-2015")
-
-
-class Spans(click.ParamType):
-    """N or FIRST:LAST, counted from 1."""
-
-    name = "spans"
-
-    def convert(self, value, param, ctx) -> tuple[int, int]:
-        if isinstance(value, tuple):
-            return value
-        found = re.fullmatch(r"(\d+)(?::(\d+))?", value.strip())
-        first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
-        if not 1 <= first <= last:
-            self.fail(f"{value!r}: must be N or FIRST:LAST, counted from 1", param, ctx)
-        return first, last
 
 
 @click.command()

@@ -45,13 +45,18 @@ class Case(Table):
     first_span: int = Field(ge=1, description="that is evaluated, from 1")
     last_span: int = Field(ge=1, description="that is evaluated")
     given_force: Positive | None = Field(None, alias="static_force", description="N")
-    supply: Supply = Field("", description="whose mean force by speed is the static force")
+    supply: Supply = Field("", description="whose mean force by speed the run has")
     ranges: Annotated[dict[str, Range], BeforeValidator(_known)] = Field({}, description="in the units of FIGURES")
 
     @property
     def static_force(self) -> float:
-        """Static force in N."""
+        """Static force in N; the mean force where that is given by the supply."""
         return mean_force(self.supply, self.speed) if self.given_force is None else self.given_force
+
+    @property
+    def mean_force(self) -> float | None:
+        """N, that the run is to have over the evaluated spans, by an uplift; None: it has what it has."""
+        return mean_force(self.supply, self.speed) if self.supply else None
 
     @model_validator(mode="after")
     def _fits(self) -> Case:

@@ -11,7 +11,7 @@ from .plan import Run
 from .workers import Finished
 
 FIGURE_COLUMNS = {name: f"{name} [{unit}]" if unit else name for name, (_, unit, _) in FIGURES.items()}
-COLUMNS = ["group", "of", "label", "speed [km/h]", "section", *FIGURE_COLUMNS.values(), "CPU [s]", "key"]
+COLUMNS = ["group", "of", "label", "speed [km/h]", "section", *FIGURE_COLUMNS.values(), "uplift [N]", "CPU [s]", "key"]
 
 
 def run_record(path: Path, head: Mapping[str, str]) -> Record[Finished]:
@@ -34,9 +34,10 @@ def put_in_order(record: Record[Finished], runs: Iterable[Run]) -> None:
 
 def _to_row(finished: Finished) -> list[object]:
     numbers = (float(finished.statistics[name]) for name in FIGURES)
-    return [*finished.told, *numbers, f"{finished.seconds:.3f}", finished.key]
+    return [*finished.told, *numbers, finished.uplift, f"{finished.seconds:.3f}", finished.key]
 
 
 def _from_row(row: Mapping[str, str]) -> Finished:
     found = {name: float(row[column] or "nan") for name, column in FIGURE_COLUMNS.items()}
-    return Finished(row["key"], tuple(row[name] for name in COLUMNS[:5]), found, float(row["CPU [s]"]))
+    told = tuple(row[name] for name in COLUMNS[:5])
+    return Finished(row["key"], told, found, float(row["uplift [N]"]), float(row["CPU [s]"]))

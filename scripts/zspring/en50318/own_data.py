@@ -10,10 +10,11 @@ from pathlib import Path
 
 from ..bench.conditions import FILE_ORDER, STATED
 from ..bench.curves import Source
-from ..errors import ZSpringError
+from ..errors import ZSpringError, tell
 from ..fmu import Fmu
 from ..heads import synthetic_note
 from ..interrupt import Interrupted, stop_on_interrupt
+from ..line.limits import of_series
 from ..line.series import Series, read_series, require_pressing
 from ..line.stated import SAME_SPEED, agreed
 from ..line.statistics import FIGURES, Section, Statistics, statistics
@@ -104,6 +105,7 @@ def report_on(
         found[title] = statistics(series, section)
         require_pressing(f"{series.name}, {section}" if section else series.name, found[title]["mean_force"])
         made.append(series_chapter(series, section, case, title))
+        tell(of_series(series, section), folder)
         settings[title] = series.name
     if found:
         lines += report.as_lines(figures_table(found, str(section or "the whole series")))
@@ -127,6 +129,7 @@ def series_chapter(series: Series, section: Section | None, case: Case | None, t
     judged = judge(found, case.ranges) if case else []
     place = str(section or "the whole series")
     chapter = Chapter(title, [f"{series.name}: {series.time.size} samples, one each {1e3 * series.step:.4g} ms."])
+    chapter.blocks += [f"{line}." for line in of_series(series, section)]
     if case and judged:
         chapter.blocks.append(report.verdict(case.title, {title.lower(): judged}) + ".")
     chapter.blocks += [

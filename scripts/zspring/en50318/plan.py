@@ -36,7 +36,8 @@ class Run:
     section: Section
     line: Parameters
     pantograph: Parameters
-    uplift: float = 0.0  # N, extra force on the upper frame
+    uplift: float = 0.0  # N, extra force on the upper frame; with a mean force, what the search for it begins with
+    mean_force: float | None = None  # N, over the section, for which the uplift is chosen
     step: float = 1e-3  # s
     scheme: str = "implicit"
     start_up: str = "ramp"
@@ -127,9 +128,10 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
             parameters = _pantograph(name, pantograph)
             parameters |= {key: parse(pantograph.variables[key], text) for key, text in given.items()}
             parameters["static_force"] = mean_force("AC", 0.0)
-            uplift = mean_force("AC", speed) - mean_force("AC", 0.0)
+            target = mean_force("AC", speed)
+            uplift = target - parameters["static_force"]
             kept = f"{slug(label)}-{speed:g}-km-h.csv" if speed == shown else ""
-            runs.append(Run("heads", label, HEAD_LINE, speed, section, line, parameters, uplift, series=kept))
+            runs.append(Run("heads", label, HEAD_LINE, speed, section, line, parameters, uplift, target, series=kept))
     return runs
 
 
@@ -144,6 +146,7 @@ def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run
         section_of(case, catenary, line),
         line,
         parameters,
+        mean_force=case.mean_force,
         series=f"{slug(f'{edition.name} {case.title}')}.csv",
     )
 

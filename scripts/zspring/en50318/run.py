@@ -39,15 +39,16 @@ def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int
     runs = [*(run for each in references for run in each), *sensitivity, *heads]
     record = run_record(folder / "runs.csv", _head(catenary, pantograph))
     speed = _run_missing(record, runs, catenary, pantograph, folder, jobs)
-    found = {finished.key: finished.statistics for finished in record.results}
+    done = {finished.key: finished for finished in record.results}
+    found = {key: finished.statistics for key, finished in done.items()}
 
     outcomes = [
-        chapters.outcome(edition, its_runs, found, folder) for edition, its_runs in zip(plan.editions, references)
+        chapters.outcome(edition, its_runs, done, folder) for edition, its_runs in zip(plan.editions, references)
     ]
     made = [chapters.edition_chapter(each, catenary, pantograph) for each in outcomes]
     if sensitivity:
         made.insert(1, chapters.sensitivity_chapter(outcomes[0], sensitivity, found))
-    lines = [line for each in outcomes for line in _summary(each)]
+    lines = [line for each in outcomes for line in _summary(each, catenary)]
     if sensitivity:
         lines.append(str(made[1].blocks[1]).removesuffix("."))
     if heads:
@@ -89,8 +90,8 @@ def _run_missing(
     return f"{len(todo)} runs in {seconds:.1f} s on {min(jobs, len(todo))} processes"
 
 
-def _summary(made: chapters.Outcome) -> list[str]:
-    """Main figures of an edition's cases side by side, and the verdict."""
+def _summary(made: chapters.Outcome, catenary: Fmu) -> list[str]:
+    """Main figures of an edition's cases side by side, the verdict, and what to know beside it."""
     judged = made.judged
     rows = []
     for name in (*report.SENSITIVE, "loss_of_contact"):
@@ -103,7 +104,7 @@ def _summary(made: chapters.Outcome) -> list[str]:
     lines = report.as_lines(report.Table("", [made.edition.name, *titles], rows))
     if any(judged.values()):
         lines.append(report.verdict(made.edition.name, judged))
-    return [*lines, ""]
+    return [*lines, *made.remarks(catenary), ""]
 
 
 def _head(catenary: Fmu, pantograph: Fmu) -> dict[str, str]:

@@ -15,7 +15,8 @@ from pathlib import Path
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..line.journey import Journey
-from ..line.result import write_result
+from ..line.mean_force import uplifts_for
+from ..line.result import LineResult, write_result
 from ..line.run import run_line
 from ..line.schemes import Coupling
 from ..line.statistics import Statistics, statistics
@@ -30,6 +31,7 @@ class Finished:
     key: str  # of the run
     told: tuple[str, ...]  # group, of, label, speed in km/h, section
     statistics: Statistics
+    uplift: float  # N, as chosen for a mean force, or as given
     seconds: float  # of CPU
 
 
@@ -71,17 +73,27 @@ def _open(catenary: Path, pantograph: Path) -> None:
 def _execute(run: Run, folder: Path) -> Finished:
     """One run; its series goes to a file that is whole or not there. Raises ZSpringError naming the run."""
     catenary, pantograph = _fmus
-    try:
-        journey = Journey(run.speed / 3.6, run.start, step=run.step, start_up=run.start_up, uplift=run.uplift)
+    results: list[LineResult] = []
+
+    def means(uplifts: tuple[float, ...]) -> list[float]:
+        journey = Journey(run.speed / 3.6, run.start, step=run.step, start_up=run.start_up, uplift=uplifts)
         system = System(catenary, pantograph, run.line, [run.pantograph], journey, Coupling(run.scheme))
-        result = run_line(system)
-        found = statistics(result.series(0), run.section)
+        results.append(run_line(system))
+        return [statistics(results[-1].series(0), run.section)["mean_force"]]
+
+    try:
+        uplift: tuple[float, ...] = (run.uplift,)
+        if run.mean_force is None:
+            means(uplift)
+        else:
+            uplift = uplifts_for(run.mean_force, uplift, means)
+        found = statistics(results[-1].series(0), run.section)
     except ZSpringError as error:
         raise ZSpringError(f"{run.of}, {run.label}, {run.speed:g} km/h: {error}") from None
     if run.series:
         path = folder / run.series
         unfinished = path.with_name(f"unfinished-{path.name}")
-        write_result(result, unfinished)
+        write_result(results[-1], unfinished)
         os.replace(unfinished, path)
     told = run.group, run.of, run.label, repr(run.speed), str(run.section)
-    return Finished(run.key, told, found, result.elapsed)
+    return Finished(run.key, told, found, uplift[0], sum(result.elapsed for result in results))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,7 +30,7 @@ class Journey:
                 taken off the height that the pantographs see and comes back as a half cosine over the first
                 span, as the uplift forces do; from then on static_force is the force at height 0.
                 "direct": the lift stays off for the whole run, and the uplift forces act at once.
-    uplift      extra upward force on each pantograph, N
+    uplift      extra upward force, N, on all pantographs or on each
     uplift_on   the mass it acts on: "head", "upper_frame" or "lower_frame"
     """
 
@@ -40,16 +40,17 @@ class Journey:
     step: float = 1e-3
     spacing: float = 0.0
     start_up: str = "ramp"
-    uplift: float = 0.0
+    uplift: float | Sequence[float] = 0.0
     uplift_on: str = "upper_frame"
 
 
 @dataclass(frozen=True)
 class FittedJourney(Journey):
-    """A journey whose start and stop are known."""
+    """A journey whose start and stop are known, and the uplift of each pantograph."""
 
     start: float
     stop: float
+    uplift: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -84,8 +85,12 @@ class LineExtent:
             value = getattr(journey, name)
             if not (math.isfinite(value) and value > 0):
                 raise ZSpringError(f"{name} = {value:g} {unit}: must be above 0")
-        if not math.isfinite(journey.uplift):
-            raise ZSpringError(f"uplift = {journey.uplift:g} N: must be finite")
+        each = (journey.uplift,) * count if isinstance(journey.uplift, (int, float)) else tuple(journey.uplift)
+        if len(each) != count:
+            raise ZSpringError(f"{len(each)} uplifts for {count} pantographs")
+        for uplift in each:
+            if not math.isfinite(uplift):
+                raise ZSpringError(f"uplift = {uplift:g} N: must be finite")
         behind = journey.spacing if count > 1 else 0.0
         if count > 1 and not 0 < behind < self.length:
             raise ZSpringError(
@@ -104,7 +109,7 @@ class LineExtent:
             raise ZSpringError(
                 f"step = {journey.step:g} s: is longer than the run of {(stop - start) / journey.speed:g} s"
             )
-        return FittedJourney(**{**vars(journey), "start": start, "stop": stop, "spacing": behind})
+        return FittedJourney(**{**vars(journey), "start": start, "stop": stop, "spacing": behind, "uplift": each})
 
 
 def parameter_value(fmu: Fmu, parameters: Mapping[str, Value], name: str) -> Value:

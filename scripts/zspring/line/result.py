@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import ZSpringError, missing_extra
 from ..tables import read_table, write_table
 from .series import Series
+from .stated import UNDISTURBED, Stated
 
 SLIPPING = 0.99  # share of Mf from which a joint counts as slipping; the tanh law creeps below it
 _SUPPORT = re.compile(r"support uplift at (\S+) m")
@@ -39,6 +40,12 @@ class LineResult:
         count = self.position.shape[1]
         return np.array([float(self.settings[f"pantograph {i + 1} zspring.Mf"].split()[0]) for i in range(count)])
 
+    @property
+    def undisturbed_until(self) -> np.ndarray:
+        """Where each pantograph meets what the far end reflects, m along the line. (p,)"""
+        count = self.position.shape[1]
+        return np.array([float(self.settings.get(UNDISTURBED.format(i + 1), "inf m").split()[0]) for i in range(count)])
+
     def series(self, i: int) -> Series:
         """What pantograph i, counted from 0, does along the line, for the statistics."""
         names = [f"support at {position:g} m" for position in self.support_position]
@@ -50,6 +57,7 @@ class LineResult:
             height=self.wire_height[:, i],
             uplift=dict(zip(names, self.support_uplift.T)),
             support_position=dict(zip(names, self.support_position.tolist())),
+            stated=Stated(undisturbed_until=float(self.undisturbed_until[i])),
         )
 
 

@@ -16,11 +16,14 @@ from ..fmu import Instance
 from ..interrupt import Interrupted, stop_on_interrupt
 from ..variables import Value, parse, with_unit
 from .calls import PreparedCalls
+from .journey import FittedJourney
 from .recorder import Recorder
 from .result import LineResult
 from .schemes import GaussSeidel, Implicit, Jacobi, Pantographs
 from .sides import ContactInMaster, ContactInPantograph, Wire
+from .stated import UNDISTURBED
 from .system import System
+from .waves import fastest, undisturbed_until
 
 LOOK_EVERY = 50  # steps between two looks at Ctrl-C and the progress bar
 
@@ -65,7 +68,7 @@ class LineRun:
         for head, (parameters, inputs) in zip(heads, self.head_starts):
             head.start(parameters, inputs)
         wire.start(*self.wire_start)
-        self.settings = _settings(system, wire, heads)
+        self.settings = _settings(system, self.journey, wire, heads)
 
         wire_calls, *head_calls = (self._stack.enter_context(PreparedCalls(i)) for i in (wire, *heads))
         self._wire = Wire(wire_calls, count)
@@ -78,11 +81,11 @@ class LineRun:
     @cached_property
     def head_starts(self) -> list[tuple[dict[str, Value], dict[str, float]]]:
         """Parameters and first inputs of each pantograph."""
-        uplift = self.journey.uplift if self.journey.start_up == "direct" else 0.0
+        direct, acts_on = self.journey.start_up == "direct", f"uplift.{self.journey.uplift_on}"
         drive = parse(self.system.pantograph.variables["drive"], self.system.coupling.drive)
         return [
-            ({**parameters, "drive": drive}, {"contact_force": force, f"uplift.{self.journey.uplift_on}": uplift})
-            for parameters, force in zip(self.system.pantographs, self._static_forces)
+            ({**parameters, "drive": drive}, {"contact_force": force, acts_on: uplift if direct else 0.0})
+            for parameters, force, uplift in zip(self.system.pantographs, self._static_forces, self.journey.uplift)
         ]
 
     @cached_property
@@ -148,8 +151,8 @@ class LineRun:
         if travelled >= 1.0 + self.journey.step * self.journey.speed / self.line.span:
             return [0.0] * len(self.lifted)
         rest = 0.5 * (1.0 + math.cos(math.pi * min(travelled, 1.0)))
-        for uplift in self._uplifts:
-            uplift.set((self.journey.uplift * (1.0 - rest),))
+        for input_of, uplift in zip(self._uplifts, self.journey.uplift):
+            input_of.set((uplift * (1.0 - rest),))
         return [rest * height for height in self.lifted]
 
     def __enter__(self) -> LineRun:
@@ -159,16 +162,16 @@ class LineRun:
         self._stack.close()
 
 
-def _settings(system: System, wire: Instance, heads: Sequence[Instance]) -> dict[str, str]:
+def _settings(system: System, journey: FittedJourney, wire: Instance, heads: Sequence[Instance]) -> dict[str, str]:
     """Everything that it takes to repeat the run, in words."""
-    journey, coupling = system.journey, system.coupling
+    coupling = system.coupling
     settings = {
         "speed": f"{journey.speed * 3.6:.6g} km/h",
         "start": f"{journey.start:g} m",
         "stop": f"{journey.stop:g} m",
         "step": f"{journey.step:g} s",
         "start-up": journey.start_up,
-        "uplift": f"{journey.uplift:g} N on {journey.uplift_on}",
+        "uplift": f"{', '.join(f'{uplift:g}' for uplift in dict.fromkeys(journey.uplift))} N on {journey.uplift_on}",
         "coupling": coupling.scheme,
         "drive": coupling.drive,
         "pantographs": str(len(heads)),
@@ -177,6 +180,9 @@ def _settings(system: System, wire: Instance, heads: Sequence[Instance]) -> dict
         settings["spacing"] = f"{journey.spacing:g} m"
     if coupling.scheme == "implicit":
         settings["tolerance"] = f"{coupling.tolerance:g}"
+    for i in range(len(heads)):
+        until = undisturbed_until(system.extent, journey, i * journey.spacing, fastest(system.catenary, system.line))
+        settings[UNDISTURBED.format(i + 1)] = f"{until:.1f} m"
     named = [("catenary", system.catenary, wire)]
     named += [(f"pantograph {i + 1}", system.pantograph, head) for i, head in enumerate(heads)]
     for prefix, fmu, instance in named:

@@ -113,7 +113,7 @@ def read_series(path: Path, speed: float | None = None, pantograph: int = 1, tur
     labels = ", ".join(column.label for column in table.columns.values())
     if "contact force" not in table:
         raise ZSpringError(f"{path}: no column 'contact force [N]' (there are: {labels})")
-    stated = Stated.in_head(path, table.head)
+    stated = Stated.in_head(path, table.head, pantograph)
     force = _values(table, "contact force", "N") * (-1 if turned else 1)
     require_pressing(str(path), float(np.mean(force)))
     _within(table, "contact force", force, POSSIBLE, "N")

@@ -1,8 +1,8 @@
 """What the head of a file with a contact force says of the line and the run.
 
 Lines "# key: value unit" with the keys span, spans, first support and speed; in the files of `zspring couple` and
-`zspring en50318` it stands under the parameters of the catenary, whose first support is at 0 m. Values that do not
-begin with a number say nothing.
+`zspring en50318` it stands under the parameters of the catenary, whose first support is at 0 m, and where the far end
+begins to tell stands beside it. Values that do not begin with a number say nothing.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pathlib import Path
 from ..errors import ZSpringError
 from ..units import UnitError, conversion
 
+UNDISTURBED = "pantograph {} undisturbed until"
 SAME_SPEED = 0.02  # relative: speeds closer than this are one speed
 _OUR_SPAN, _OUR_SPANS = "catenary line.span", "catenary line.spans"
 _VALUE = re.compile(r"([-+]?\d+(?:\.\d+)?)(?:\s+(\S.*))?")
@@ -28,9 +29,10 @@ class Stated:
     spans: int | None = None
     first_support: float | None = None  # m, where span 1 begins
     speed: float | None = None  # m/s
+    undisturbed_until: float | None = None  # m, by the far end: see waves.py
 
     @classmethod
-    def in_head(cls, path: Path, head: Mapping[str, str]) -> Stated:
+    def in_head(cls, path: Path, head: Mapping[str, str], pantograph: int = 1) -> Stated:
         """Raises ZSpringError for a number without its unit, or with one of another kind."""
 
         def value(unit: str, *keys: str) -> float | None:
@@ -48,6 +50,7 @@ class Stated:
             spans=None if spans is None else int(spans),
             first_support=0.0 if is_ours else value("m", "first support"),
             speed=value("m/s", "speed"),
+            undisturbed_until=value("m", UNDISTURBED.format(pantograph)),
         )
 
 

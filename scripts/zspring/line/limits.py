@@ -1,0 +1,45 @@
+"""Where a run leaves what the line's model is good for, one line each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..fmu import Fmu
+from ..variables import Value
+from .series import Series
+from .statistics import Section
+from .waves import wave_speed
+
+NEAR_WAVE_SPEED = 0.7  # of the contact wire's wave speed: what papers quote from EN 50119 as the limit of operation
+SMALL = 0.2  # m; small displacements: tensions and lengths of the wires, and the steady arms, as they are at rest
+
+
+def near_wave_speed(catenary: Fmu, line: Mapping[str, Value], speed: float) -> list[str]:
+    """A line for a speed in m/s near the contact wire's wave speed."""
+    wave = wave_speed(catenary, line, "contact_wire")
+    if speed <= NEAR_WAVE_SPEED * wave:
+        return []
+    return [
+        f"warning: {3.6 * speed:.4g} km/h is {speed / wave:.2f} of the contact wire's wave speed, {3.6 * wave:.4g} "
+        f"km/h: above {NEAR_WAVE_SPEED:g} of it forces depend on details of the line that no data here tell"
+    ]
+
+
+def of_series(series: Series, section: Section | None) -> list[str]:
+    """Lines for supports lifted far, and for an evaluated section (None: all) in which the far end is felt."""
+    found = []
+    lifted = max((float(each.max()) for each in (series.uplift or {}).values()), default=0.0)
+    if lifted > SMALL:
+        found.append(
+            f"warning: {series.name}: uplift of {1e3 * lifted:.3g} mm at a support: the line's model is for small "
+            f"displacements, up to {1e3 * SMALL:g} mm"
+        )
+    until = series.stated.undisturbed_until
+    if until is not None and series.position is not None:
+        end = section.bounds[1] if section else float(series.position[-1])
+        if end > until:
+            found.append(
+                f"warning: {series.name}: what is evaluated goes to {end:.4g} m, forces from {until:.4g} m on are not "
+                "those of a longer line: the far end reflects the start"
+            )
+    return found
