@@ -25,6 +25,7 @@ Outputs Simulation::output_rates() {
 }
 
 Outputs Simulation::outputs_change(const Inputs& direction) {
+  if (ended_with_leftover()) return {};
   const double length = held_.length;
   if (length == 0) {
     Passage changed[pantographs];

@@ -23,6 +23,7 @@ class Simulation final : public Model<Simulation, Inputs, LineState, Held> {
   friend Model;
 
   Held hold(const Inputs& inputs, double length) const override { return {inputs, length}; }
+  double solver_step() const override { return line_.p.solver.step; }
   double largest_internal_step(const Held&) const override { return line_.p.solver.step; }
   // Discarded where a pantograph that presses leaves the line, or the slack droppers could not be found.
   std::optional<Discard> run(const Held& held) override;

@@ -22,9 +22,15 @@ class Model {
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
-  // Over `length` > 0 s. Does not allocate.
+  // Over `length` > 0 s. Does not allocate. A leftover of a step, as hosts that add up their times make one before the
+  // stop, is no step: an input that is to be reached within it would jump. Its time waits for the next step.
   std::optional<Discard> advance(const Inputs& inputs, double length) {
     Simulation& self = static_cast<Simulation&>(*this);
+    length += waiting_;
+    if (is_leftover(length, self.solver_step())) {
+      waiting_ = length;
+      return std::nullopt;
+    }
     const Held held = self.hold(inputs, length);
     if (std::optional<Discard> discard = too_long(length, self.largest_internal_step(held))) return discard;
     begin_ = state_;
@@ -37,6 +43,7 @@ class Model {
     } else {
       before_ = std::move(begin_);
       held_ = held;
+      waiting_ = 0;
     }
     return discard;
   }
@@ -51,7 +58,7 @@ class Model {
   // d outputs / d time at the end of the last step.
   virtual Outputs output_rates() = 0;
   // Variation of the outputs with that of the inputs' values held in the last step; before the first one, with
-  // that of the initial inputs.
+  // that of the initial inputs; nothing after a leftover, in which no input acted.
   virtual Outputs outputs_change(const Inputs& direction) = 0;
 
   // For the log: what does not fit together at the start; what the solver did in the whole simulation; what it did
@@ -61,12 +68,13 @@ class Model {
   virtual std::optional<Text> describe_step() const { return std::nullopt; }
 
   // All of the state but the parameters.
-  void write(Writer& writer) { visit(state_, writer), visit(before_, writer), visit(held_, writer); }
+  void write(Writer& writer) { visit_all(writer); }
   // Throws Refusal where these numbers are those of no simulation.
   void restore(Reader& reader) {
-    visit(state_, reader), visit(before_, reader), visit(held_, reader);
+    visit_all(reader);
     forget_outputs();
-    if (!(is_possible(state_) && is_possible(before_) && held_.length >= 0) ||
+    const bool waits = waiting_ == 0 || (waiting_ > 0 && is_leftover(waiting_, solver_step()));
+    if (!(is_possible(state_) && is_possible(before_) && held_.length >= 0 && waits) ||
         too_long(held_.length, largest_internal_step(held_)) || !all_finite(outputs()))
       refuse("FMU state: holds numbers that no simulation leaves behind");
   }
@@ -78,10 +86,13 @@ class Model {
   void begin(State state, Held held) {
     state_ = before_ = begin_ = std::move(state);
     held_ = std::move(held);
+    waiting_ = 0;
     if (!all_finite(outputs())) refuse(overflow);
   }
 
+  bool ended_with_leftover() const { return waiting_ > 0; }
   virtual Held hold(const Inputs& inputs, double length) const = 0;
+  virtual double solver_step() const = 0;  // s
   virtual double largest_internal_step(const Held& held) const = 0;
   // Leads state_ from begin_ through a communication step, or to anywhere if that is discarded.
   virtual std::optional<Discard> run(const Held& held) = 0;
@@ -93,6 +104,12 @@ class Model {
   State begin_;           // of a step under way
 
  private:
+  template <class Visitor>
+  void visit_all(Visitor& visitor) {
+    visit(state_, visitor), visit(before_, visitor), visit(held_, visitor), visit(waiting_, visitor);
+  }
+
+  double waiting_ = 0;  // s, of leftovers since the last step
   std::optional<Outputs> outputs_;
 };
 

@@ -17,6 +17,9 @@ inline Count internal_steps(double length, double largest) {
   return std::max<Count>(1, static_cast<Count>(std::ceil(length / largest - rounding_of_time)));
 }
 
+// Too short for anything to happen in it.
+inline bool is_leftover(double length, double solver_step) { return length < rounding_of_time * solver_step; }
+
 // More internal steps would take hours: such a length is a mistake.
 inline std::optional<Discard> too_long(double length, double internal_step) {
   if (length <= 1e9 * internal_step) return std::nullopt;

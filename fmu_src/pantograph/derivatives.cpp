@@ -28,6 +28,7 @@ Outputs Simulation::output_rates() {
 }
 
 Outputs Simulation::outputs_change(const Inputs& direction) {
+  if (ended_with_leftover()) return {};
   const Parameters& p = mechanics_.parameters;
   const MechanicalState& s = state_.mechanical;
   if (held_.length == 0) {

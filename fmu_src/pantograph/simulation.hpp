@@ -30,6 +30,7 @@ class Simulation final : public Model<Simulation, Inputs, SimulationState, Held>
   Held hold(const Inputs& inputs, double length) const override {
     return {inputs, mechanics_.parameters.bench, length};
   }
+  double solver_step() const override { return mechanics_.parameters.solver.step; }
   double largest_internal_step(const Held& held) const override {
     return zspring::largest_internal_step(mechanics_.parameters, held);
   }
