@@ -41,6 +41,14 @@ class LinearModel:
         force = np.broadcast_to(np.eye(len(self.names))[:, :1], (*dynamic.shape[:-1], 1))
         return np.linalg.solve(dynamic, force)[..., HEAD, 0]
 
+    def level_slope(self, frequency: float) -> float:
+        """d log |H| / d omega in s at the head, for a frequency > 0 in Hz."""
+        omega, unit = 2 * np.pi * frequency, np.eye(len(self.names))[HEAD]
+        dynamic = -(omega**2) * self.M + 1j * omega * self.C + self.K
+        answer = np.linalg.solve(dynamic, unit)  # D is symmetric, so that H' = -answer D' answer
+        change = -2 * omega * self.M + 1j * self.C
+        return float((-(answer @ change @ answer) / answer[HEAD]).real)
+
 
 def linear_model(parameters: Mapping[str, float], model: str) -> LinearModel:
     """A linear model of the pantograph.

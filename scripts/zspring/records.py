@@ -73,7 +73,7 @@ class Record(Generic[T]):
 
 def fill(
     record: Record[T],
-    total: int,
+    total: int | None,
     missing: int,
     what: str,
     work: Callable[[threading.Event], Iterator[T]],
@@ -81,14 +81,16 @@ def fill(
 ) -> float:
     """Do what is missing, with a progress bar, each result into the record at once; the seconds it took.
 
-    total, missing      number of results, in all and still to come
+    total, missing      number of results, in all and still to come; a total of None is not known before
     what                their name, in the plural
     work                results as they come, until the event is set
     Raises Interrupted after Ctrl-C; a ZSpringError of the work says what is kept.
     """
-    if 0 < missing < total:
-        print(f"going on after {total - missing} of {total} {what} in {record.path}")
-    done, begin = total - missing, time.perf_counter()
+    done, of, begin = 0, "", time.perf_counter()
+    if total is not None:
+        done, of = total - missing, f" of {total}"
+        if 0 < missing < total:
+            print(f"going on after {done}{of} {what} in {record.path}")
     kept = f"kept in {record.path}; the same command goes on from there"
     bar = tqdm(total=total, initial=done, desc=label, unit=f" {what}", disable=None)
     with stop_on_interrupt() as stop, ExitStack() as stack, bar:
@@ -102,9 +104,9 @@ def fill(
         except ZSpringError as error:
             if not done:
                 raise
-            raise type(error)(f"{error}; {done} of {total} {what} are {kept}") from None
-    if stop.is_set() and done < total:
-        raise Interrupted(f"interrupted after {done} of {total} {what}, {kept}")
+            raise type(error)(f"{error}; {done}{of} {what} are {kept}") from None
+    if stop.is_set() and (total is None or done < total):
+        raise Interrupted(f"interrupted after {done}{of} {what}, {kept}")
     return time.perf_counter() - begin
 
 

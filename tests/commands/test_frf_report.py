@@ -6,41 +6,67 @@ import signal
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from zspring.bench.measure import FrfPoint, FrfSettings
+from zspring.bench.refine import Extreme
 from zspring.fmu import Fmu
-from zspring.frf.report import doubtful_lines, error_line, resonance_table, richardson, solver_line
+from zspring.frf.report import (
+    Row,
+    difference_lines,
+    doubtful_lines,
+    error_line,
+    resonance_table,
+    richardson,
+    solver_line,
+)
 from zspring.frf.run import default_folder
 from zspring.interrupt import stop_on_interrupt
 from zspring.options import Numbers
+from zspring.text_tables import with_error
 
 
-def points_of(level, frequency, amplitude: float) -> list[FrfPoint]:
-    return [FrfPoint(amplitude, float(f), "settled", complex(np.exp(level(f)))) for f in frequency]
-
-
-def test_the_table_lists_peaks_and_valleys_in_mm_per_newton_between_the_bounds():
-    """Parabolas of log|H|: a peak at 6.53 Hz of 0.4 mm/N, a valley at 4.11 Hz of 0.04 mm/N."""
-
-    def level(f):
-        return np.where(f > 5.3, np.log(4e-4) - (f - 6.53) ** 2, np.log(4e-5) + (f - 4.11) ** 2 / 2)
-
-    def bound(f):
-        return np.log(3e-4) - (f - 6.0) ** 2
-
-    frequency = np.arange(3.0, 8.0, 0.25)
-    points = [*points_of(level, frequency, 4.0), *points_of(bound, frequency, 0.5)]
-    bounds = {name: (frequency, np.exp(bound(frequency)) + 0j) for name in ("locked", "free")}
-    header, *rows = resonance_table(points[::-1], bounds)
-    assert header.split() == ["resonances,", "Hz", "(mm/N)", "antiresonances,", "Hz", "(mm/N)"]
-    cells = [row.replace("(", " ").replace(")", " ").split() for row in rows]
-    assert cells == [
+def test_the_table_lists_extremes_in_mm_per_newton_with_the_digits_that_are_known():
+    peak, valley = Extreme(True, 6.5302, 0.0011, 4.0004e-4, 6e-9), Extreme(False, 4.1103, 0.03, 4e-5, 1.2e-7)
+    jump = Extreme(True, 5.31, 0.004, 3e-4, 1e-7, "jump")
+    unsettled = Extreme(False, 9.5, 0.25, 2e-5, 4e-7, "not settled")
+    locked, free = (Row(name, "", [Extreme(True, f, 0, 3e-4, 0)]) for name, f in (("locked", 6.0), ("free", 5.0)))
+    rows = [locked, Row("0.5 m/s2", "up", [valley, peak]), Row("4 m/s2", "up", [jump, unsettled]), free]
+    header, *lines, legend = resonance_table(rows)
+    assert header.split() == ["resonances:", "Hz,", "mm/N", "antiresonances"]
+    assert [line.split() for line in lines] == [
         ["locked", "6.000", "0.3000"],
-        ["0.5", "m/s2", "6.000", "0.3000"],
-        ["4", "m/s2", "6.530", "0.4000", "4.110", "0.0400"],
-        ["free", "6.000", "0.3000"],
+        ["0.5", "m/s2", "6.530(2)", "0.4000(1)", "4.11(3)", "0.0400(2)"],
+        ["4", "m/s2", "5.310(4)", "0.3000(1)|", "9.5(3)", "0.0200(4)?"],
+        ["free", "5.000", "0.3000"],
+    ]
+    assert legend == "in brackets: error of the last digit; ? rests on points not settled; | the curve jumps there"
+    both = resonance_table([locked, Row("1 m/s2", "up", [peak]), Row("1 m/s2", "down", [peak]), free])
+    assert [line.split()[:3] for line in both[2:4]] == [["1", "m/s2", "up"], ["1", "m/s2", "down"]]
+
+
+@pytest.mark.parametrize(
+    "value, error, text",
+    [
+        (6.53456, 0.0023, "6.535(3)"),
+        (6.53456, 0.0091, "6.53(1)"),
+        (6.53456, 0.01, "6.53(1)"),
+        (6.53456, 1e-7, "6.535(1)"),
+        (6.53456, 0.0, "6.535"),
+        (1234.5, 21.0, "1230(30)"),
+    ],
+)
+def test_no_digit_is_printed_beyond_the_error(value, error, text):
+    assert with_error(value, error, 3) == text
+
+
+def test_sweeps_that_end_in_different_states_are_told():
+    up = [FrfPoint(1, f, "settled", 1 + 0j, remaining=1e-4) for f in (2.0, 3.0)]
+    down = [FrfPoint(1, f, "settled", H, remaining=1e-4) for f, H in ((2.0, 1.001 + 0j), (3.0, 1 + 0.016j))]
+    assert difference_lines(up, down[:1], 1e-3) == ["up and down differ by at most 0.1 % at 1 m/s2 (2 Hz)"]
+    assert difference_lines(up, down, 1e-3) == [
+        "up and down differ by at most 1.6 % at 1 m/s2 (3 Hz)",
+        "at 1 of 2 points by more than is left of both transients: two steady states",
     ]
 
 

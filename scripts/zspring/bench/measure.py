@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 import queue
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 from ..fmu import Fmu, StepDiscarded
 from ..variables import Value, exact
@@ -35,7 +35,7 @@ class FrfSettings:
     amplitudes: tuple[float, ...] = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)  # m/s2, peak acceleration
     frequencies: tuple[float, ...] = tuple(i / 4 for i in range(2, 81))  # Hz, ascending
     parameters: Mapping[str, Value] = field(default_factory=dict)  # of the FMU
-    direction: str = "up"  # "up", "down", or "rest": each point from the static state
+    direction: str = "up"  # "up", "down", or "rest": each point from the static state; a plan may say "both"
     through: str = "bench"  # key of BENCHES
     tolerance: float = 1e-3  # largest relative distance of H from its steady state, see settle
     min_periods: int = 8
@@ -90,6 +90,17 @@ class Sweep:
     state: Mapping[str, Any] | None = None
 
 
+Kept = tuple[FrfPoint, Mapping[str, Any] | None]  # with the bench's state; None: the next point starts from rest
+Task = TypeVar("Task")
+
+
+def differences(some: Sequence[FrfPoint], others: Sequence[FrfPoint]) -> dict[tuple[float, float], float]:
+    """How far H of others is from that of some, relatively, by amplitude and frequency, where both have one."""
+    H = {(p.amplitude, p.frequency): p.H for p in others}
+    found = {(p.amplitude, p.frequency): abs(H.get((p.amplitude, p.frequency), math.nan) / p.H - 1) for p in some}
+    return {place: difference for place, difference in found.items() if math.isfinite(difference)}
+
+
 def left_out(settings: FrfSettings) -> list[FrfPoint]:
     """The points that need more stroke than there is."""
     points = (FrfPoint(a, f, LEFT_OUT) for a in settings.amplitudes for f in settings.frequencies)
@@ -110,23 +121,33 @@ def sweeps(settings: FrfSettings) -> list[Sweep]:
     return result
 
 
-def measure(
-    fmu: Fmu, settings: FrfSettings, todo: list[Sweep], jobs: int, stop: threading.Event
-) -> Iterator[tuple[FrfPoint, dict[str, Any] | None]]:
-    """Points as they get ready, each with the bench's state, None where the next one starts from rest.
+def measure(fmu: Fmu, settings: FrfSettings, todo: list[Sweep], jobs: int, stop: threading.Event) -> Iterator[Kept]:
+    """The points of all these sweeps as they get ready, see `at_a_time`."""
+    return at_a_time(run_sweep, fmu, settings, todo, jobs, stop)
 
-    `jobs` sweeps run at a time, each on an instance of its own. Ends early once `stop` is set.
+
+def at_a_time(
+    run: Callable[[Bench, Task, FrfSettings, threading.Event], Iterator[Kept]],
+    fmu: Fmu,
+    settings: FrfSettings,
+    todo: list[Task],
+    jobs: int,
+    stop: threading.Event,
+) -> Iterator[Kept]:
+    """The points of all tasks as they get ready.
+
+    `jobs` tasks run at a time, each on an instance of its own. Ends early once `stop` is set.
     Raises FmuError when the FMU refuses a parameter.
     """
     waiting: queue.SimpleQueue = queue.SimpleQueue()
     finished: queue.SimpleQueue = queue.SimpleQueue()
-    for sweep in todo:
-        waiting.put(sweep)
+    for task in todo:
+        waiting.put(task)
 
     def work(bench: Bench) -> None:
         try:
             while not stop.is_set():
-                for result in run_sweep(bench, waiting.get_nowait(), settings, stop):
+                for result in run(bench, waiting.get_nowait(), settings, stop):
                     finished.put(result)
         except queue.Empty:
             pass
@@ -154,9 +175,7 @@ def measure(
             raise
 
 
-def run_sweep(
-    bench: Bench, sweep: Sweep, settings: FrfSettings, stop: threading.Event
-) -> Iterator[tuple[FrfPoint, dict[str, Any] | None]]:
+def run_sweep(bench: Bench, sweep: Sweep, settings: FrfSettings, stop: threading.Event) -> Iterator[Kept]:
     """The points of one sweep, until `stop` is set; after a failed one it goes on from rest."""
     state = sweep.state
     if state:

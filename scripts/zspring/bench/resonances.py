@@ -17,18 +17,24 @@ def extremes(frequency: np.ndarray, H: np.ndarray) -> tuple[list[Extreme], list[
     that differ by less than LEAST_STEP are both left out.
     """
     level = np.log(np.abs(H))
+    maxima: list[Extreme] = []
+    minima: list[Extreme] = []
+    for i in turns(level):
+        (maxima if level[i] > level[i - 1] else minima).append(_vertex(frequency, level, i))
+    return maxima, minima
+
+
+def turns(level: np.ndarray) -> list[int]:
+    """Where levels (n,) of log |H| are extreme, but for those that differ from a neighbouring one by < LEAST_STEP."""
     slopes = np.sign(np.diff(level))
-    turns = [i for i in range(1, len(level) - 1) if slopes[i - 1] * slopes[i] < 0]
-    while len(turns) > 1:
-        steps = np.abs(np.diff(level[turns]))
+    found = [i for i in range(1, len(level) - 1) if slopes[i - 1] * slopes[i] < 0]
+    while len(found) > 1:
+        steps = np.abs(np.diff(level[found]))
         smallest = int(np.argmin(steps))
         if steps[smallest] >= LEAST_STEP:
             break
-        del turns[smallest : smallest + 2]
-    return (
-        [_vertex(frequency, level, i) for i in turns if slopes[i] < 0],
-        [_vertex(frequency, level, i) for i in turns if slopes[i] > 0],
-    )
+        del found[smallest : smallest + 2]
+    return found
 
 
 def _vertex(frequency: np.ndarray, level: np.ndarray, i: int) -> Extreme:

@@ -26,9 +26,9 @@ STANDARD = FrfSettings()
 )
 @choice(
     "--direction",
-    of=["up", "down", "rest"],
+    of=["up", "down", "both", "rest"],
     default=STANDARD.direction,
-    help="Sweep the frequency up or down without stopping, or begin each point in the static state.",
+    help="Sweep the frequency up or down without stopping, both to compare, or begin each point in the static state.",
 )
 @pantograph_options
 @choice(
@@ -74,13 +74,16 @@ STANDARD = FrfSettings()
 @click.option(
     "--error-estimate", is_flag=True, help="Measure at half the internal step, too, and estimate the error of H."
 )
+@click.option("--no-extremes", is_flag=True, help="Measure these frequencies only: no search for extremes, no table.")
 @jobs_option("Sweeps at a time (amplitudes; single points from rest).")
 @format_option
-def frf(pantograph, quantity, output, error_estimate, jobs, suffix, **settings) -> None:
+def frf(pantograph, quantity, output, error_estimate, no_extremes, jobs, suffix, **settings) -> None:
     """Measure the first-order FRF by stepped sine with controlled response.
 
-    Without options: the standard figure. Writes frf.csv and frf.png, and prints resonances and
-    antiresonances.
+    Without options: the standard figure. Writes frf.csv and frf.png.
+
+    Resonances and antiresonances are measured between these frequencies until they are known, approached as the
+    sweep does, some points at half the internal step: table resonances.csv, further points refined.csv.
 
     Ctrl-C keeps all finished points, and the same command goes on from there; with other settings it needs
     another folder.
@@ -94,4 +97,4 @@ def frf(pantograph, quantity, output, error_estimate, jobs, suffix, **settings) 
         frf_settings = FrfSettings(parameters=parameters, **settings)
         folder = output or default_folder(fmu, frf_settings)
         with claimed(folder):
-            run_frf(fmu, frf_settings, folder, quantity, suffix, jobs, error_estimate)
+            run_frf(fmu, frf_settings, folder, quantity, suffix, jobs, error_estimate, not no_extremes)

@@ -6,12 +6,12 @@ import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-from ..bench.measure import FrfPoint, Sweep
+from ..bench.measure import FrfPoint, Kept, Sweep
 from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
 from ..records import Record
 from ..tables import write_table
+from .report import Row
 
 
 def frf_columns(quantity: str) -> list[str]:
@@ -67,9 +67,6 @@ def frf_point(row: Mapping[str, str]) -> FrfPoint:
     )
 
 
-Kept = tuple[FrfPoint, Mapping[str, Any] | None]  # a point, and the state of the bench after it
-
-
 def frf_record(path: Path, head: Mapping[str, str], quantity: str) -> Record[Kept]:
     """Points of a measurement under way, with the bench's states.
 
@@ -102,10 +99,24 @@ def write_frf(
     points: Sequence[FrfPoint],
     quantity: str,
     errors: Mapping[tuple[float, float], float] | None = None,
-) -> None:
+) -> Path:
     """The finished FRF file; `errors` are relative error estimates by (amplitude, frequency)."""
     columns, rows = frf_columns(quantity), [frf_row(point, quantity) for point in points]
     if errors:
         columns.append("error_estimate")
         rows = [[*row, errors.get((point.amplitude, point.frequency), math.nan)] for row, point in zip(rows, points)]
-    write_table(path, head, columns, rows, digits=None)
+    return write_table(path, head, columns, rows, digits=None)
+
+
+def write_resonances(path: Path, head: Mapping[str, str], rows: Iterable[Row]) -> Path:
+    """Extremes of the receptance; without errors where they are exact."""
+    quantities = ["frequency [Hz]", "frequency_error [Hz]", "magnitude [m/N]", "magnitude_error [m/N]"]
+    cells = (
+        [
+            *(row.curve, row.direction, "resonance" if e.is_resonance else "antiresonance"),
+            *(e.frequency, e.frequency_error or math.nan, e.magnitude, e.magnitude_error or math.nan, e.doubt),
+        ]
+        for row in rows
+        for e in row.extremes
+    )
+    return write_table(path, head, ["curve", "direction", "kind", *quantities, "doubt"], cells)

@@ -3,17 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, REPEATS, FrfPoint, FrfSettings
-from ..bench.resonances import extremes
+from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, REPEATS, FrfPoint, FrfSettings, differences
+from ..bench.refine import JUMP, Extreme, exact_extremes
 from ..fmu import Fmu
 from ..heads import file_head, now, synthetic_note
-from ..receptance import receptance
+from ..receptance import LinearModel, linear_model
+from ..text_tables import aligned, with_error
 from ..variables import Value, text
 
-Curve = tuple[np.ndarray, np.ndarray]  # frequency (n,) in Hz, receptance (n,) in m/N
+
+@dataclass(frozen=True)
+class Row:
+    """Extremes of one curve, ascending: of a linear bound, or of an amplitude swept in a direction."""
+
+    curve: str
+    direction: str
+    extremes: Sequence[Extreme]
+
+
+DOUBTS = {  # mark and meaning
+    NOT_SETTLED: ("?", "rests on points not settled"),
+    JUMP: ("|", "the curve jumps there"),
+}
 
 
 def frf_head(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], quantity: str) -> dict[str, str]:
@@ -34,31 +49,66 @@ def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value]) -> s
     """Title of the figure: what was measured and whether any number of the Z-spring is synthetic."""
     suspension, friction = (text(fmu.variables[name], parameters[name]) for name in ("suspension", "friction"))
     model = f"Z-spring, friction {friction}" if suspension == "ZSpring" else f"suspension {suspension}"
-    course = "each point from rest" if settings.direction == "rest" else f"sweep {settings.direction}"
+    course = {"rest": "each point from rest", "both": "sweeps up and down"}.get(
+        settings.direction, f"sweep {settings.direction}"
+    )
     return f"Pantograph head, first-order FRF\n{model}, {course}{synthetic_note(fmu, parameters)}"
 
 
-def linear_bounds(settings: FrfSettings, parameters: Mapping[str, Value], linear: bool) -> dict[str, Curve]:
-    """Receptances of the linear models over the figure's range: "locked" and "free", or "linear" alone."""
-    frequency = np.linspace(min(settings.frequencies), max(settings.frequencies), 4001)
-    models = ["linear"] if linear else ["locked", "free"]
-    return {model: (frequency, receptance(frequency, parameters, model)) for model in models}
+def linear_bounds(parameters: Mapping[str, Value], linear: bool) -> dict[str, LinearModel]:
+    """The linear models between which the FRF is: "locked" and "free", or "linear" alone."""
+    return {model: linear_model(parameters, model) for model in (["linear"] if linear else ["locked", "free"])}
 
 
-def resonance_table(points: Sequence[FrfPoint], bounds: Mapping[str, Curve]) -> list[str]:
-    """Lines with resonances and antiresonances of the receptance, by amplitude, between the linear bounds."""
-    curves = {f"{model}": curve for model, curve in bounds.items()}
-    measured = {}
-    for amplitude in sorted({point.amplitude for point in points}):
-        curve = sorted((p for p in points if p.amplitude == amplitude), key=lambda p: p.frequency)
-        measured[f"{amplitude:g} m/s2"] = (np.array([p.frequency for p in curve]), np.array([p.H for p in curve]))
-    first, *last = curves.items()
-    rows = [(name, *(_cells(found) for found in extremes(*curve))) for name, curve in [first, *measured.items(), *last]]
-    width = max(len(row[1]) for row in rows)
-    return [
-        f"{'':10s}  {'resonances, Hz (mm/N)':{width}s}  antiresonances, Hz (mm/N)",
-        *(f"{name:>10s}  {maxima:{width}s}  {minima}" for name, maxima, minima in rows),
-    ]
+def resonance_rows(
+    measured: Mapping[str, Mapping[float, Sequence[Extreme]]],
+    bounds: Mapping[str, LinearModel],
+    band: tuple[float, float],
+) -> list[Row]:
+    """Extremes of the receptance, of the amplitudes between the linear bounds.
+
+    measured    by direction and amplitude (m/s2)
+    band        Hz, where those of the bounds are looked for; they are exact
+    """
+    first, *last = (Row(name, "", exact_extremes(model, band)) for name, model in bounds.items())
+    amplitudes = sorted({amplitude for found in measured.values() for amplitude in found})
+    middle = [Row(f"{a:g} m/s2", way, found[a]) for a in amplitudes for way, found in measured.items()]
+    return [first, *middle, *last]
+
+
+def resonance_table(rows: Sequence[Row]) -> list[str]:
+    """Lines with resonances and antiresonances by curve."""
+    several = len({row.direction for row in rows if row.direction}) > 1
+    maxima, minima = (
+        [[_cell(e) for e in row.extremes if e.is_resonance is kind] for row in rows] for kind in (True, False)
+    )
+    width = max(1, *map(len, maxima))
+    table = [["", "resonances: Hz, mm/N", *[""] * (width - 1), "antiresonances"]]
+    for row, high, low in zip(rows, maxima, minima):
+        name = f"{row.curve} {row.direction}".rstrip() if several else row.curve
+        table.append([name, *high, *[""] * (width - len(high)), *low])
+    doubts = {e.doubt for row in rows for e in row.extremes}
+    notes = [f"; {mark} {meaning}" for doubt, (mark, meaning) in DOUBTS.items() if doubt in doubts]
+    return [*aligned(table), "".join(["in brackets: error of the last digit", *notes])]
+
+
+def difference_lines(up: Sequence[FrfPoint], down: Sequence[FrfPoint], tolerance: float) -> list[str]:
+    """How far the sweep down is from the sweep up by amplitude, and at how many points that is no transient."""
+    found = differences(up, down)
+    if not found:
+        return []
+    worst = []
+    for amplitude in dict.fromkeys(a for a, _ in found):
+        place = max((key for key in found if key[0] == amplitude), key=found.__getitem__)
+        worst.append(f"{100 * found[place]:.2g} % at {amplitude:g} m/s2 ({place[1]:g} Hz)")
+    left = {(p.amplitude, p.frequency): 0.0 for p in up}
+    for p in (*up, *down):
+        left[p.amplitude, p.frequency] += max(p.remaining, tolerance)
+    other = sum(difference > left[key] for key, difference in found.items())
+    lines = [f"up and down differ by at most {', '.join(worst)}"]
+    if other:
+        lines.append(f"at {other} of {len(found)} points by more than is left of both transients: two steady states")
+    return lines
 
 
 def solver_line(points: Iterable[FrfPoint]) -> str:
@@ -101,5 +151,7 @@ def doubtful_lines(points: Iterable[FrfPoint]) -> list[str]:
     return lines
 
 
-def _cells(found: Iterable[tuple[float, float]]) -> str:
-    return "   ".join(f"{frequency:6.3f} ({1e3 * magnitude:.4f})" for frequency, magnitude in found)
+def _cell(extreme: Extreme) -> str:
+    frequency = with_error(extreme.frequency, extreme.frequency_error, 3)
+    magnitude = with_error(1e3 * extreme.magnitude, 1e3 * extreme.magnitude_error, 4)
+    return f"{frequency} {magnitude}{DOUBTS[extreme.doubt][0] if extreme.doubt else ''}"
