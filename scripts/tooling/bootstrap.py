@@ -279,7 +279,8 @@ def run(command: list[str], also: Sequence[str] = (), groups: Sequence[str] = ()
     """Set up, then become `command`, whose first item is a program of .venv; `folder` is where to start it.
 
     `also` are MEASUREMENTS or TESTS: with probes it finds the folder of the C++ test programs in the environment
-    variable ZSPRING_PROBES, and the modules of tests/helpers. `groups` are dependency groups of pyproject.toml to install as well.
+    variable ZSPRING_PROBES, and the modules of tests/helpers. `groups` are dependency groups of pyproject.toml to
+    install as well.
     """
     try:
         set_up(also, groups)
