@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import importlib.resources
 import math
+import sys
 import xml.etree.ElementTree as ET
 from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
@@ -99,12 +100,14 @@ def read_set(path: Path, fmu: Fmu, prefix: str = "") -> dict[str, Value]:
 
     prefix  of names to read, which have it before a dot; others are passed over
     A unit that the file defines is converted through its base units; any other must be one that the FMU
-    knows. Bounds are left to the FMU. Raises ZSpringError for a file of another kind, an element that is none of SSV's,
-    a name that is no parameter or comes twice, a wrong type or unit, a number that is not finite, and a set without
-    parameters.
+    knows. Bounds are left to the FMU. Inputs, which the sets of an SSP archive have, are the commands' own business:
+    they are passed over, and standard error says so. Raises ZSpringError for a file of another kind, an element that
+    is none of SSV's, a name that is no parameter or comes twice, a wrong type or unit, a number that is not finite,
+    and a set without parameters.
     """
     root = _root(path)
     values: dict[str, Value] = {}
+    inputs: list[str] = []
     try:
         units = {
             unit.get("name", ""): _base_unit(base)
@@ -118,13 +121,19 @@ def read_set(path: Path, fmu: Fmu, prefix: str = "") -> dict[str, Value]:
                 continue
             if name in values:
                 raise ZSpringError(f"two parameters {whole!r}")
+            if name in fmu.variables.names("input"):
+                inputs.append(name)
+                continue
             if not prefix:
                 _look_for_prefix(path, name, fmu)
             values[name] = _value(fmu, fmu.variables.parameter(name), element, units)
         if not values:
-            raise ZSpringError(f"no parameter whose name begins with {prefix}." if prefix else "has no parameter")
+            but = f" but inputs: {', '.join(inputs)}" if inputs else ""
+            raise ZSpringError(f"no parameter whose name begins with {prefix}." if prefix else f"has no parameter{but}")
     except ZSpringError as error:
         raise ZSpringError(f"{path}: {error}") from None
+    if inputs:
+        print(f"{path}: inputs are passed over: {', '.join(inputs)}", file=sys.stderr)
     return values
 
 

@@ -8,8 +8,10 @@ import re
 import signal
 import sys
 import threading
+import zipfile
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,6 +26,7 @@ from zspring.line.result import columns, read_result, write_result
 from zspring.line.run import LineRun
 from zspring.line.schemes import Coupling
 from zspring.line.system import System
+from zspring.parameter_sets import chosen_set
 
 SHORT = ["--set-line", "line.spans=4", "--stop", "150", "--step", "0.002"]
 
@@ -153,6 +156,18 @@ def test_a_run_that_cannot_go_on_keeps_its_rows_in_the_file(tmp_path):
     assert len(read_result(tmp_path / "line.csv").time) >= 1
 
 
+def test_results_of_other_settings_are_kept(zspring, tmp_path):
+    """The series, the comparison of steps and the archive; the same settings may come again."""
+    short = ["--set-line", "line.spans=2", "--start", "20", "--step", "0.002"]
+    (tmp_path / "out").mkdir()
+    for target in ["--output", "out"], ["--ssp", "out/line.ssp"], ["--compare-steps", "--output", "steps"]:
+        for _ in range(2):
+            zspring(*short, *target)
+        before = {path: path.read_bytes() for path in tmp_path.glob("*/*")}
+        assert "is of other settings" in zspring(*short, "--uplift", "3", *target, status=1)
+        assert {path: path.read_bytes() for path in tmp_path.glob("*/*")} == before
+
+
 def test_steps_are_compared(zspring, tmp_path):
     out = zspring(*SHORT[:4], "--parameters", "en-50318-2002", "--compare-steps", "--output", "out")
     lines = (tmp_path / "out/steps.csv").read_text().splitlines()
@@ -192,7 +207,14 @@ def test_bad_settings_get_one_line(zspring, tmp_path, arguments, message):
     assert not (tmp_path / "results").exists()
 
 
-def test_the_archive_is_written_with_the_settings(zspring, tmp_path):
-    out = zspring(*SHORT, "--set", "zspring.Mf=0.3", "--ssp", "line.ssp")
+def test_the_archive_is_written_with_the_settings(zspring, tmp_path, capsys):
+    """The pantograph's set in it is one for --parameters; its inputs are passed over."""
+    out = zspring(*SHORT, "--set", "zspring.Mf=0.3", "--uplift", "20", "--ssp", "line.ssp")
     assert out == "written: line.ssp\n"
     assert (tmp_path / "line.ssp").stat().st_size > 100_000
+    with zipfile.ZipFile(tmp_path / "line.ssp") as archive:
+        path = Path(archive.extract("resources/pantograph.ssv", tmp_path))
+    with Fmu() as pantograph:
+        used = chosen_set(str(path), pantograph, but_not=("drive",))
+    assert used == {"solver.step": 5e-4, "zspring.Mf": 0.3}
+    assert capsys.readouterr().err == f"{path}: inputs are passed over: contact_force, uplift.upper_frame\n"

@@ -130,7 +130,7 @@ def test_units_are_converted_by_definition_or_by_the_fmus_display_units(model, t
     "text, complaint",
     [
         (SSV.format(parameter("zspring.kk", 'Real value="1"')), "no parameter 'zspring.kk'.*did you mean"),
-        (SSV.format(parameter("contact_force", 'Real value="1"')), "not a parameter but input"),
+        (SSV.format(parameter("contact_force", 'Real value="1"')), "has no parameter but inputs: contact_force"),
         (SSV.format(parameter("m1", 'Real value="1" unit="N/mm"')), r"m1 \[N/mm\].*convertible to kg"),
         (SSV.format(parameter("m1", 'Real value="1" unit="stone"')), r"m1: unit \[stone\]: must be one of kg"),
         (SSV.format(parameter("m1", 'Real value="heavy"')), "m1 = 'heavy': must be a number"),

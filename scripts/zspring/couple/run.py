@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import zipfile
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 
@@ -19,7 +20,8 @@ from ..line.run import LineRun, run_line
 from ..line.schemes import Coupling
 from ..line.statistics import low_pass, statistics
 from ..line.system import System
-from ..tables import write_table
+from ..records import keep_others
+from ..tables import read_rows, write_table
 from ..variables import Value
 from .compare import STEPS, compare_steps, compared, comparison_table
 from .plot import comparison_figure, line_figure
@@ -75,9 +77,13 @@ def run_and_write(
     Raises Interrupted after Ctrl-C and ZSpringError where the run cannot go on; the rows so far are kept.
     """
     path, made = folder / "line.csv", list[LineRun]()
+    aims = {"mean force aimed at": f"{aim.force:g} N"} if aim else {}
 
     def finished(system: System) -> LineResult:
         with LineRun(system) as run:
+            run.settings |= aims
+            if not made:
+                _keep_others(path, run.settings, ["elapsed", *(["uplift"] if aim else [])])
             try:
                 run.finish(progress=True)
             except (Interrupted, ZSpringError) as error:
@@ -120,14 +126,16 @@ def compare_and_write(system: System, folder: Path, suffix: str, what: str = "")
 
     Raises ZSpringError where the run is too short for it.
     """
-    extent = system.extent
-    journey = extent.complete(system.journey, len(system.pantographs))
+    with LineRun(system) as run:
+        extent, journey, head = run.line, run.journey, run.settings
     least = journey.start + extent.span + journey.speed * max(STEPS)
     if journey.stop < least:
         raise ZSpringError(
             f"stop = {journey.stop:g} m: with --compare-steps must be at least {least:g} m, one step of "
             f"{max(STEPS):g} s more than a span of {extent.span:g} m after the start, {journey.start:g} m"
         )
+    paths = folder / "steps.csv", folder / f"steps.{suffix}"
+    keep_others(paths[0], head)
     bar = tqdm(total=len(compared(system.coupling.drive)) * len(STEPS), unit=" runs", disable=None)
 
     def one(step: float, coupling: Coupling, of_line: Parameters, of_pantographs: Parameters) -> LineResult:
@@ -144,10 +152,8 @@ def compare_and_write(system: System, folder: Path, suffix: str, what: str = "")
                 rows.append(row)
     except (Interrupted, ZSpringError) as error:
         stopped = error
-    paths = folder / "steps.csv", folder / f"steps.{suffix}"
     if stopped and not rows:
         raise stopped
-    head = {**system.catenary.identity, "speed": speed, "drive": system.coupling.drive}
     columns = ["scheme", "step [s]", "rms [N]", "largest [N]", "mean [N]", "deviation [N]", "elapsed [s]"]
     write_table(paths[0], head, columns, map(astuple, rows), digits=None)
     print(*comparison_table(rows), sep="\n")
@@ -158,10 +164,31 @@ def compare_and_write(system: System, folder: Path, suffix: str, what: str = "")
 
 
 def export_ssp(system: System, path: Path) -> None:
-    """Write the archive of SSP 1.0."""
+    """Write the archive of SSP 1.0. Raises ZSpringError where one of another system is there."""
+    unfinished = path.with_name(f"{path.name}.new")
     with LineRun(system) as run:
-        write_ssp(run, path)
+        write_ssp(run, unfinished)
+    if path.exists() and _members(path) != _members(unfinished):
+        unfinished.unlink()
+        raise ZSpringError(f"{path} is of other settings: remove it, or name another file")
+    unfinished.replace(path)
     print("written:", path)
+
+
+def _members(path: Path) -> dict[str, int] | None:
+    """Check sums of the files in an archive, None for what is none."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return {each.filename: each.CRC for each in archive.infolist()}
+    except zipfile.BadZipFile:
+        return None
+
+
+def _keep_others(path: Path, head: Mapping[str, str], but: Sequence[str]) -> None:
+    """keep_others without what a run comes to: `but` these keys."""
+    if path.exists():
+        found, _ = read_rows(path)
+        keep_others(path, *({key: value for key, value in each.items() if key not in but} for each in (head, found)))
 
 
 def _title(result: LineResult, system: System, what: str) -> str:
