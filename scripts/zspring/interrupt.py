@@ -13,6 +13,19 @@ class Interrupted(Exception):
 
 
 @contextmanager
+def held_back() -> Iterator[None]:
+    """Ctrl-C waits for the end of the block, and never comes to processes started within; not on Windows."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
 def stop_on_interrupt() -> Iterator[threading.Event]:
     """An event that the first Ctrl-C sets; the second interrupts at once. Only for the main thread."""
     stop = threading.Event()

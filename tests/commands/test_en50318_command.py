@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -11,6 +14,10 @@ import numpy as np
 import pytest
 
 from commands import head, start, table, zspring
+from zspring.en50318.edition import packaged_edition, read_edition
+from zspring.en50318.run import Plan, validate
+from zspring.fmu import CATENARY, Fmu, installed_fmu
+from zspring.interrupt import Interrupted
 from zspring.parameter_sets import LINES, packaged_sets
 
 EDITION = """
@@ -88,6 +95,11 @@ def test_the_series_of_our_run_gives_the_same_figures_as_a_users_file(quick, tmp
     assert found["largest uplift at a support, mm"] == f"{float(row['support_uplift [mm]']):.1f}"
     assert "all 8 figures are inside" in out
     assert (tmp_path / "own/report.html").stat().st_size > 50_000
+    before = (tmp_path / "own/report.html").read_bytes()
+    for other in (["--series", str(file)], ["--quick"]):
+        _, err = zspring(tmp_path, "en50318", *other, "--output", "own", status=1)
+        assert "own/report.html is of other settings (" in err.replace("\\", "/")
+    assert (tmp_path / "own/report.html").read_bytes() == before
 
 
 def test_a_simulation_is_compared_with_a_line_test(quick, tmp_path):
@@ -122,10 +134,10 @@ def test_a_series_of_times_alone_is_placed_by_its_speed(tmp_path):
     np.savetxt(tmp_path / "a.csv", np.column_stack([time, force]), delimiter=",", header=columns, comments="")
     place = ["--speed", "180", "--span", "60", "--first-support", "10"]
     for spans, mean in (("2", 120), ("1", 100), ("3", 100)):
-        out, _ = zspring(tmp_path, "en50318", "--series", "a.csv", *place, "--spans", spans, "--output", "out")
+        out, _ = zspring(tmp_path, "en50318", "--series", "a.csv", *place, "--spans", spans, "--output", f"of-{spans}")
         assert float(figures(out)["mean force, N"]) == pytest.approx(mean, abs=0.4)
         assert f"span {spans}, {60 * int(spans) - 50} to {60 * int(spans) + 10} m" in out
-    page = (tmp_path / "out/report.html").read_text(encoding="utf-8")
+    page = (tmp_path / "of-1/report.html").read_text(encoding="utf-8")
     assert "101.4" in page  # target mean force at that speed
 
 
@@ -142,6 +154,64 @@ def test_the_spans_of_our_own_runs_are_those_of_their_line(tmp_path):
     assert float(figures(out)["mean force, N"]) == pytest.approx(force[inside].mean(), abs=0.5)
 
 
+def interrupt(process: subprocess.Popen) -> None:
+    """Ctrl-C as a terminal sends it: to the workers, too."""
+    if hasattr(os, "killpg"):
+        os.killpg(process.pid, signal.SIGINT)
+    else:
+        process.send_signal(signal.SIGINT)
+
+
+LOADING = """
+import sys, types
+
+class Loading(types.ModuleType):
+    def __getattr__(self, name):
+        raise KeyboardInterrupt
+
+sys.modules["zspring.cli"] = Loading("zspring.cli")
+from zspring.__main__ import main
+sys.exit(main())
+"""
+
+
+def test_an_interruption_while_the_command_is_loading_gets_one_line():
+    done = subprocess.run([sys.executable, "-c", LOADING], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (130, "zspring: interrupted\n")
+
+
+def test_an_interruption_while_the_report_is_written_keeps_all_runs(quick, monkeypatch):
+    """And the report as it was."""
+    folder, _ = quick
+    before = (folder / "report.html").read_bytes()
+    edition_2002 = read_edition(packaged_edition("en-50318-2002")).only_first()
+    with Fmu() as pantograph, Fmu(installed_fmu(CATENARY)) as catenary:
+        monkeypatch.setattr(
+            "zspring.en50318.page.Picture.source", property(lambda _: signal.raise_signal(signal.SIGINT))
+        )
+        with pytest.raises(Interrupted, match=r"1 runs are kept in .*runs\.csv; the same command goes on from there"):
+            validate(Plan([edition_2002], False, ()), catenary, pantograph, folder, 1)
+    assert (folder / "report.html").read_bytes() == before
+
+
+def test_an_own_pantograph_is_counted_apart(quick, tmp_path):
+    """The DSA-250 on the first reference line: figures of `couple`, beside those of the reference and not judged."""
+    folder, _ = quick
+    out, _ = zspring(folder.parent, "en50318", "--quick", "--parameters", "dsa-250", "--output", "out")
+    zspring(tmp_path, "couple", "--parameters", "dsa-250", "--output", "couple")
+    assert "going on after 1 of 2 runs" in out
+    rows = {row["group"]: row for row in table(folder / "runs.csv")}
+    assert set(rows) == {"reference", "own pantograph"}
+    ours, theirs = (float(rows[group]["standard_deviation [N]"]) for group in ("own pantograph", "reference"))
+    assert re.search(rf"standard deviation, 0-20 Hz, N +{ours:.1f} \({theirs:.1f}\)", out) and ours != theirs
+    force = np.array([float(row["contact force 1 [N]"]) for row in table(tmp_path / "couple/line.csv")])
+    own = table(folder / "own-pantograph-en-50318-2002-250-km-h.csv")
+    assert [float(row["contact force 1 [N]"]) for row in own] == pytest.approx(force, abs=1e-6)
+    assert "all 8 figures are inside" in out and out.count("accepted ranges") == 1
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "Own pantograph: dsa-250" in page and "not for this pantograph" in page
+
+
 def test_an_interrupted_validation_goes_on_with_what_is_missing(tmp_path):
     path = edition(tmp_path, 200, 230, 260, 290)
     arguments = ["en50318", "--edition", str(path), "--output", "out", "--jobs", "1"]
@@ -151,9 +221,9 @@ def test_an_interrupted_validation_goes_on_with_what_is_missing(tmp_path):
     while not (record.exists() and len(table(record)) >= 1):
         assert process.poll() is None and time.monotonic() < deadline
         time.sleep(0.02)
-    process.send_signal(signal.SIGINT)
+    interrupt(process)
     _, err = process.communicate(timeout=60)
-    assert process.returncode == 130 and "Traceback" not in err and "goes on from there" in err
+    assert process.returncode == 130 and "goes on from there" in err and len(err.strip().splitlines()) == 1
     kept = table(record)
     assert 1 <= len(kept) < 4
     out, _ = zspring(tmp_path, *arguments[:-2])
@@ -234,7 +304,8 @@ def test_the_empty_edition_is_written_once(tmp_path):
         ),
         (["--series", "of-55-m.csv", "--spans", "1", "--first-support", "9"], "first support: 9 m by --first-support"),
         (["--spans", "5:6"], "--spans is for --series"),
-        (["--parameters", "dsa-380"], "--parameters is for --frf"),
+        (["--parameters", "dsa-380", "--series", "long.csv"], "--parameters and --set are for --frf and for our runs"),
+        (["--head-speeds", "60"], "--head-speeds 60 km/h: too slow for the line of 10 spans"),
         (["--edition", "line.toml"], "no such file, and no set of that name"),
         (["--edition", "spans.toml"], "spans 2 to 4: must be in 2 .. 3"),
     ],

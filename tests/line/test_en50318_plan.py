@@ -9,7 +9,18 @@ import pytest
 
 from zspring.couple.report import evaluated, sections, summary
 from zspring.en50318.edition import packaged_edition, read_edition
-from zspring.en50318.plan import CHOICES, HEADS, Run, head_runs, reference_runs, section_of, sensitivity_runs, slug
+from zspring.en50318.own_pantograph import OwnPantograph
+from zspring.en50318.plan import (
+    CHOICES,
+    HEADS,
+    STARTS,
+    Run,
+    head_runs,
+    reference_runs,
+    section_of,
+    sensitivity_runs,
+    slug,
+)
 from zspring.errors import ZSpringError
 from zspring.fmu import CATENARY, Fmu, installed_fmu
 from zspring.line.journey import LineExtent
@@ -80,19 +91,47 @@ def test_anything_that_changes_the_numbers_changes_the_key(references):
     assert replace(run).key == run.key
 
 
-def test_all_heads_run_with_the_mean_force_of_the_law_at_each_speed(fmus):
-    """70 N at a stand, and 0.00097 v^2 more from the uplift; the forces are kept of the last speed alone."""
+def test_all_heads_run_with_the_mean_force_of_the_law_from_places_over_the_first_span(fmus):
+    """70 N at a stand, and 0.00097 v^2 more from the uplift; the forces are kept of the last speed's first start."""
     runs = head_runs(*fmus, (200.0, 275.0))
-    assert [(run.speed, run.label) for run in runs] == [(v, head[0]) for v in (200, 275) for head in HEADS]
+    assert [(run.speed, run.label) for run in runs] == [
+        (speed, head.label) for speed in (200, 275) for head in HEADS for _ in range(STARTS if head.every_start else 1)
+    ]
     for run in runs:
         assert run.pantograph["static_force"] == 70
         assert run.uplift == pytest.approx(0.00097 * run.speed**2)
-        assert (run.group, run.of, run.section) == ("heads", "benchmark-2015", Section(4, 7, 55.0))
-        assert bool(run.series) == (run.speed == 275)
+        assert (run.group, run.of) == ("heads", "benchmark-2015")
+        assert bool(run.series) <= (run.speed == 275 and run.start == 0)
+    assert sum(bool(run.series) for run in runs) == sum(head.is_drawn for head in HEADS)
+    linear = [run.start for run in runs if run.label == HEADS[0].label and run.speed == 200]
+    assert linear == pytest.approx([0, 6.875, 13.75, 20.625, 27.5, 34.375, 41.25, 48.125])
     kept = [run.series for run in head_runs(*fmus, (300.0, 350.0)) if run.series]
-    assert len(kept) == len(HEADS) and all(name.endswith("-300-km-h.csv") for name in kept)
-    laws = [(run.pantograph["suspension"], run.pantograph.get("friction")) for run in runs[:4]]
-    assert laws[0][0] == 2 and laws[1] == (1, 1) and laws[2] == (1, 2) and laws[3][0] == 4
+    assert len(kept) == 4 and all(name.endswith("-300-km-h.csv") for name in kept)
+    first = {run.label: run.pantograph for run in runs}
+    laws = [(first[head.label]["suspension"], first[head.label].get("friction")) for head in HEADS]
+    assert laws == [(2, None), (1, 1), (4, 1), (1, 2), (3, 1)]
+
+
+@pytest.mark.parametrize("speed, spans", [(150.0, (3, 4)), (200.0, (3, 6)), (250.0, (4, 7)), (350.0, (5, 8))])
+def test_heads_are_evaluated_before_the_far_end_is_felt(fmus, speed, spans):
+    """Spans of 55 m, waves of 127.66 m/s: at 200 km/h the front is met after 2 * 550 / (127.66 + 55.56) s, 333.5 m."""
+    run = head_runs(*fmus, (speed,))[0]
+    assert run.section == Section(*spans, 55.0)
+    until = speed / 3.6 * 2 * 550 / ((22000 / 1.35) ** 0.5 + speed / 3.6)
+    assert run.section.bounds[1] <= until < run.section.bounds[1] + 55
+    assert run.stop > run.section.bounds[1]
+
+
+def test_an_own_pantograph_runs_as_the_reference_does_but_for_itself(references):
+    """Its own static force goes before the case's; a target mean force stays the same."""
+    own = OwnPantograph("mine", {"m1": 6.0}).runs(references)
+    for run, reference in zip(own, references):
+        assert run.pantograph == {"static_force": 120, "m1": 6.0} and run.group == "own pantograph"
+        left = {"pantograph": reference.pantograph, "group": "reference", "series": reference.series}
+        assert replace(run, **left) == reference and run.series != reference.series
+    aimed = [replace(run, mean_force=150.0) for run in references]
+    for run in OwnPantograph("mine", {"static_force": 70.0}).runs(aimed):
+        assert run.pantograph["static_force"] == 70 and (run.uplift, run.mean_force) == (80, 150)
 
 
 @pytest.mark.parametrize("spans, fits", [((2, 9), True), ((2, 2), True), ((1, 2), False), ((8, 10), False)])

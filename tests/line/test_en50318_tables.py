@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from zspring.bench.curves import Curve
-from zspring.en50318 import report
+from zspring.en50318 import comparison, report, summary
 from zspring.en50318.edition import judge, packaged_edition, read_edition
+from zspring.en50318.files import BY_SPAN
 from zspring.en50318.frf import LevelComparison, band_errors
-from zspring.en50318.own_data import OwnData, agreement_chapter, figures_table, series_chapter
+from zspring.en50318.own_data import OwnData, agreement_chapter, series_chapter
 from zspring.en50318.page import BAD, GOOD, Cell, Table
+from zspring.en50318.workers import Finished
 from zspring.line.series import Series
 from zspring.line.statistics import FIGURES, Section
 
@@ -67,16 +69,19 @@ def test_the_deviations_share_of_the_mean_is_judged_at_three_tenths(deviation, s
     found = {**FOUND, "standard_deviation": deviation}
     table = report.case_table(found, judge(found, {"mean_force": (90, 110)}), 250.0, "x")
     (label,) = (row for row in rows_of(table) if row.startswith("standard deviation / mean force"))
-    assert label.endswith("at most 0.3")
     row = rows_of(table)[label]
-    assert texts(row) == [f"{deviation / 100:.3f}", "", said] and row[-1].look == {"inside": GOOD, "outside": BAD}[said]
+    assert (
+        texts(row) == [f"{deviation / 100:.3f}", "at most 0.3", said]
+        and row[-1].look == {"inside": GOOD, "outside": BAD}[said]
+    )
 
 
 @pytest.mark.parametrize("mean", [0.0, -100.0])
 def test_a_force_that_does_not_press_at_all_has_no_good_share(mean):
     found = {**FOUND, "mean_force": mean}
     rows = rows_of(report.case_table(found, judge(found, {"mean_force": (90, 110)}), 250.0, "x"))
-    assert texts(rows["standard deviation / mean force, at most 0.3"]) == ["inf", "", "outside"]
+    (label,) = (row for row in rows if row.startswith("standard deviation / mean force"))
+    assert texts(rows[label]) == ["inf", "at most 0.3", "outside"]
 
 
 def test_a_table_without_ranges_judges_nothing_and_has_every_figure():
@@ -100,6 +105,8 @@ def test_verdicts_count_and_name_what_is_outside():
     assert report.verdict("X", {"slow": judged["slow"]}) == "X: all 1 figures are inside their accepted ranges"
     unknown = judge({**FOUND, "mean_force": math.nan}, ranges)
     assert "X: 2 of 2 figures are outside" in report.verdict("X", {"fast": unknown})
+    assert report.verdict("X", {"fast": unknown}).endswith("; 1 are not known")
+    assert report.verdict("X", {"a": unknown[:1]}) == "X: none of the 1 figures with accepted ranges is known"
 
 
 def test_departures_count_choices_not_figures():
@@ -124,16 +131,93 @@ def test_the_sensitivity_marks_only_what_is_outside():
     assert texts(rows["reference"])[0] == "100.0" and texts(rows["b"])[0] == "111.0"
 
 
-def test_spans_and_heads_stand_beside_each_other_in_order():
+def test_spans_stand_beside_each_other_in_order():
     other = {**FOUND, "mean_force": 90.0}
     table = report.spans_table(FOUND, {"span 5": other, "span 6": FOUND}, "x")
     assert list(table.header) == ["", "span 5", "span 6", "all"]
     assert texts(rows_of(table)["mean force, N"]) == ["90.0", "100.0", "100.0"]
-    table = report.heads_table(
-        {"linear": {200.0: FOUND, 250.0: other}, "free": {200.0: other, 250.0: FOUND}}, "mean_force"
+
+
+# The box on top
+
+
+@pytest.mark.parametrize(
+    "values, said, look",
+    [
+        ([], "none known", ""),
+        ([100.0, 15.0], "2 of 2 inside", GOOD),
+        ([89.0, 15.0], "1 of 2 inside", BAD),
+        ([100.0, math.nan], "1 of 2 inside, 1 not known", BAD),
+    ],
+)
+def test_the_box_counts_what_is_inside(values, said, look):
+    ranges = dict(zip(("mean_force", "actual_minimum"), ((90.0, 110.0), (10.0, 20.0))))
+    judged = judge({**FOUND, **dict(zip(ranges, values))}, dict(list(ranges.items())[: len(values)]))
+    *_, ranges_cell, share = summary.row("x", "p", "l", 250.0, None, judged, FOUND)
+    assert (ranges_cell.text, ranges_cell.look) == (said, look)
+    assert (share.text, share.look) == ("0.290, inside", GOOD)
+
+
+def test_the_limit_of_current_collection_is_told_apart_from_the_ranges():
+    bad = {**FOUND, "standard_deviation": 30.6}
+    *_, ranges, share = summary.row("x", "p", "l", None, Section(5, 6, 60.0), None, bad)
+    assert ranges.text == "not for this pantograph" and (share.text, share.look) == ("0.306, outside", BAD)
+    assert summary.shares("X", {"slow": FOUND, "fast": bad}) == (
+        "X: standard deviation / mean force, at most 0.3: 0.290, inside, at slow; 0.306, outside, at fast"
     )
-    assert list(table.header) == ["", "200 km/h", "250 km/h"] and table.caption == "mean force, N"
-    assert texts(rows_of(table)["linear"]) == ["100.0", "90.0"] and texts(rows_of(table)["free"]) == ["90.0", "100.0"]
+
+
+# Heads
+
+
+def heads(*by_start: tuple[float, ...]) -> dict[float, list[Finished]]:
+    """Runs at 200 km/h whose figures are these in each span; over the section their mean."""
+    made = []
+    for spans in by_start:
+        each = tuple(dict.fromkeys(BY_SPAN, value) for value in spans)
+        mean = sum(spans) / len(spans)
+        made.append(Finished("", (), dict.fromkeys(BY_SPAN, mean), each, 0.0, 1.0))
+    return {200.0: made}
+
+
+def test_differences_are_of_the_same_start_and_the_same_span():
+    """In percent for standard deviations: start 1 from 10 to 11 and from 30 to 30, start 2 from 20 to 18 and 20."""
+    linear, other = heads((10.0, 30.0), (20.0, 20.0))[200.0], heads((11.0, 30.0), (18.0, 20.0))[200.0]
+    starts, spans = comparison.differences(other, linear, "standard_deviation")
+    assert starts == pytest.approx([2.5, -5.0]) and spans == pytest.approx(np.array([[10, 0], [-10, 0]]))
+    starts, spans = comparison.differences(other, linear, "actual_minimum")
+    assert starts == pytest.approx([0.5, -1.0]) and spans == pytest.approx(np.array([[1, 0], [-2, 0]]))
+    (alone, _) = comparison.differences(other[:1], linear, "actual_minimum")
+    assert alone == pytest.approx([0.5])
+
+
+@pytest.mark.parametrize(
+    "others, said",
+    [
+        (((11.0, 31.0), (21.0, 21.0)), "higher from every start and over every span at 200 km/h"),
+        (((12.0, 29.0), (21.0, 21.0)), "higher from every start at 200 km/h"),
+        (((9.0, 29.0), (19.0, 19.0)), "lower from every start and over every span at 200 km/h"),
+        (((9.0, 29.0), (21.0, 21.0)), "of either sign at 200 km/h"),
+        (((10.0, 30.0), (20.0, 20.0)), "equal at 200 km/h"),
+    ],
+)
+def test_only_what_holds_from_every_start_is_said(others, said):
+    found = {"linear": heads((10.0, 30.0), (20.0, 20.0)), "other": heads(*others)}
+    for line in comparison.supported(found, "other", "linear"):
+        assert line.endswith(f"against linear: {said}")
+
+
+def test_the_table_of_differences_has_mean_and_both_spreads():
+    found = {"linear": heads((10.0, 30.0), (20.0, 20.0)), "other": heads((11.0, 30.0), (17.0, 20.0))}
+    rows = [[cell.text for cell in row] for row in comparison.difference_table(found, "other", "linear").cells]
+    assert rows[:3] == [
+        ["standard deviation, 0-20 Hz, %", "-2.5"],
+        ["    from start to start", "-7.5 .. +2.5"],
+        ["    single spans", "-15.0 .. +10.0"],
+    ]
+    assert rows[6][1] == "-0.5" and rows[7][1] == "-1.5 .. +0.5"  # N
+    levels = rows_of(comparison.level_table(found, "actual_minimum"))
+    assert texts(levels["other"]) == ["19.5 (18.5 .. 20.5)"]
 
 
 # Simulation against line test
@@ -179,7 +263,7 @@ def test_what_the_line_test_has_as_nothing_is_not_judged(whose, value):
 
 
 def test_series_are_shown_side_by_side_with_dashes_for_what_they_do_not_tell():
-    table = figures_table({"a": FOUND, "b": {**FOUND, "support_uplift": math.nan, "mean_force": 101.25}}, "x")
+    table = report.figures_table({"a": FOUND, "b": {**FOUND, "support_uplift": math.nan, "mean_force": 101.25}}, "x")
     rows = rows_of(table)
     assert list(table.header) == ["", "a", "b"]
     assert texts(rows["largest uplift at a support, mm"]) == ["55.0", "-"]

@@ -78,8 +78,7 @@ class FrfPoint:
     @property
     def displacement(self) -> float:
         """Peak displacement of the head in m."""
-        omega = 2 * math.pi * self.frequency
-        return self.amplitude / omega / omega  # whose square may be beyond what numbers can be
+        return self.amplitude / (2 * math.pi * self.frequency) ** 2
 
 
 @dataclass(frozen=True)

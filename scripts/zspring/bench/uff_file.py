@@ -72,8 +72,7 @@ class UniversalFile:
 
     def _read(self, number: int, header_only: bool) -> dict[str, Any]:
         try:
-            with np.errstate(invalid="ignore"):  # of numbers that are not finite
-                return self._file.read_sets(number - 1, header_only=header_only)
+            return self._file.read_sets(number - 1, header_only=header_only)
         except Exception as error:  # pyuff raises nothing more specific, about what went wrong before
             reason: BaseException = error
             while reason.__context__:

@@ -13,6 +13,7 @@ import numpy
 import scipy
 
 from ..fmu import Fmu
+from ..line.mean_force import TOLERANCE
 from ..line.series import BAND, LEAST_RATE
 from ..line.statistics import ORDER, PARTS
 from .page import WORDS, Cell, Chapter, Table
@@ -71,7 +72,9 @@ def method() -> Chapter:
             "0.00097 v² + 70 N with v in km/h, are as papers quote them.",
             "Our runs start at rest and pass over the first span from the wire's unloaded height to the wire (a "
             "half cosine), so that the static force holds at the unloaded height and the pantograph's own springs "
-            "take their share when the wire lifts.",
+            "take their share when the wire lifts. Where a mean force by speed is asked for, the uplift on the upper "
+            f"frame is the one with which the run has it over the evaluated spans, to {TOLERANCE:g} N. Of spans in "
+            "which the far end's reflection of the start is felt it is told.",
         ],
     )
 

@@ -1,4 +1,4 @@
-"""Chapters of the report on our own runs: reference cases, sensitivity, the heads compared."""
+"""Chapters of the report on our own runs: reference cases and sensitivity."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from ..line.limits import near_wave_speed, of_series
 from ..line.result import read_result
 from ..line.series import Series
 from ..line.statistics import Statistics, statistics
-from . import plot, report
+from . import plot, report, summary
 from .edition import Edition, Judgement, judge
 from .page import Chapter, Picture, Table
-from .plan import HEAD_LINE, Run, slug
+from .plan import Run, slug
 from .workers import Finished
 
 FILTERS = {  # order of the two-pass filter, by what the tables call it
@@ -38,6 +38,22 @@ class Outcome:
         """By title of the case."""
         cases = zip(self.edition.cases, self.found)
         return {case.title: judge(found, case.ranges) for case, found in cases}
+
+    def summary_rows(self) -> list[summary.Row]:
+        """The rows of the box on top."""
+        name = self.edition.name
+        return [
+            summary.row(
+                f"{name}, {case.title}",
+                Path(case.pantograph).stem,
+                Path(case.line).stem,
+                case.speed,
+                run.section,
+                self.judged[case.title],
+                found,
+            )
+            for case, run, found in zip(self.edition.cases, self.runs, self.found)
+        ]
 
     def remarks(self, catenary: Fmu) -> list[str]:
         """Lines on mean forces that were aimed at, and on what the line's model is not good for."""
@@ -74,6 +90,7 @@ def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
         chapter.blocks.append(Picture(picture, caption, f"{slug(edition.name)}-ranges.png"))
     else:
         chapter.blocks.append("No accepted ranges are known to us, so that nothing is judged here.")
+    chapter.blocks += [f"{line}." for line in made.remarks(catenary)]
     for case, run, one, found in zip(edition.cases, made.runs, made.series, made.found):
         title = f"{edition.name}, {case.title}"
         by_span = {str(s).split(",")[0]: statistics(one, s) for s in run.section.single_spans()}
@@ -93,17 +110,32 @@ def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
     return chapter
 
 
-def sensitivity_chapter(made: Outcome, runs: Sequence[Run], found: Mapping[str, Statistics]) -> Chapter:
-    """What other choices do to the figures of an edition's cases."""
-    drawn, listed, judged = {}, [], {}
-    for case, run, one, reference in zip(made.edition.cases, made.runs, made.series, made.found):
-        of = f"{run.of}, {run.label}"
-        choices = {r.label: found[r.key] for r in runs if r.of == of}
-        choices |= {name: statistics(one, run.section, order) for name, order in FILTERS.items()}
-        judged[case.title] = {name: judge(each, case.ranges) for name, each in choices.items()}
+def choices(made: Outcome, runs: Sequence[Run], found: Mapping[str, Statistics]) -> dict[str, dict[str, Statistics]]:
+    """Figures with other choices, by title of the edition's case and choice."""
+    by_case = {}
+    for case, run, one in zip(made.edition.cases, made.runs, made.series):
+        own = {r.label: found[r.key] for r in runs if r.of == f"{run.of}, {run.label}"}
+        by_case[case.title] = own | {name: statistics(one, run.section, order) for name, order in FILTERS.items()}
+    return by_case
+
+
+def judged_choices(
+    made: Outcome, found: Mapping[str, Mapping[str, Statistics]]
+) -> dict[str, dict[str, list[Judgement]]]:
+    """Judgements of what `choices` gives."""
+    return {
+        case.title: {name: judge(each, case.ranges) for name, each in found[case.title].items()}
+        for case in made.edition.cases
+    }
+
+
+def sensitivity_chapter(made: Outcome, found: Mapping[str, Mapping[str, Statistics]]) -> Chapter:
+    """What other choices do to the figures of an edition's cases; `found` as `choices` gives it."""
+    drawn, listed, judged = {}, [], judged_choices(made, found)
+    for case, reference in zip(made.edition.cases, made.found):
         rows = {"reference": judge(reference, case.ranges), **judged[case.title]}
-        listed.append(report.sensitivity_table(reference, choices, rows, case.title))
-        drawn[case.title] = reference, choices, case.ranges.get("standard_deviation")
+        listed.append(report.sensitivity_table(reference, found[case.title], rows, case.title))
+        drawn[case.title] = reference, found[case.title], case.ranges.get("standard_deviation")
     picture = Picture(
         plot.sensitivity_figure(drawn, made.edition.name), "Standard deviation by choice", "sensitivity.png"
     )
@@ -115,37 +147,3 @@ def sensitivity_chapter(made: Outcome, runs: Sequence[Run], found: Mapping[str, 
         "set and no validation; how many of these choices are inside tells more."
     )
     return Chapter(f"Sensitivity of {made.edition.name}", [text, f"{report.departures(judged)}.", picture, *listed])
-
-
-def heads_chapter(runs: Sequence[Run], found: Mapping[str, Statistics], folder: Path) -> Chapter:
-    """The linear and the Z-spring head on the same line."""
-    by_head = heads(runs, found)
-    kept = [run for run in runs if run.series]
-    shown = {run.label: read_result(folder / run.series) for run in kept}
-    title = f"DSA-380 on the line {HEAD_LINE}; Z-spring parameters synthetic"
-    return Chapter(
-        "Linear and Z-spring head",
-        [
-            "The same pantograph with the linear head suspension of the published three-mass model and with the "
-            f"Z-spring, on the same line, over {runs[0].section}, with the mean force of the law for AC lines at "
-            "each speed. Only the head suspension differs. The Z-spring's parameters are synthetic: with stuck "
-            "rods it is as stiff as the linear one, with free rods half as stiff. So this shows what such a head "
-            "can change, not what that of a real DSA-380 does.",
-            Picture(plot.heads_figure(by_head, title), "Contact quality by speed", "heads.png"),
-            *(report.heads_table(by_head, name) for name in ("standard_deviation", "standard_deviation_5_20")),
-            *(report.heads_table(by_head, name) for name in ("actual_minimum", "support_uplift", "loss_of_contact")),
-            Picture(
-                plot.heads_force_figure(shown, kept[0].section, f"{title}, {kept[0].speed:g} km/h"),
-                f"Contact force and friction moments at {kept[0].speed:g} km/h",
-                "heads-force.png",
-            ),
-        ],
-    )
-
-
-def heads(runs: Sequence[Run], found: Mapping[str, Statistics]) -> dict[str, dict[float, Statistics]]:
-    """Figures by head and speed in km/h."""
-    by_head: dict[str, dict[float, Statistics]] = {}
-    for run in runs:
-        by_head.setdefault(run.label, {})[run.speed] = found[run.key]
-    return by_head

@@ -10,7 +10,6 @@ from ..bench.conditions import DIRECTIONS
 from ..fmu import CATENARY, installed_fmu
 from ..options import (
     FILE,
-    NOT_NEGATIVE,
     POSITIVE,
     Spans,
     WholeNumbers,
@@ -93,7 +92,7 @@ EDITIONS = ("en-50318-2002", "benchmark-2015")
 @option(
     "--fixture-mass",
     default=0.0,
-    kind=NOT_NEGATIVE,
+    kind=click.FloatRange(min=0),
     metavar="M",
     help="What moves between load cell and head in the measured FRF, in kg.",
 )
@@ -103,14 +102,17 @@ EDITIONS = ("en-50318-2002", "benchmark-2015")
     help="Of the sweep in the measured FRF.  [default: as the head of the file says, else in its order]",
 )
 @pantograph_options
-@output_option("results/en50318")
+@output_option(described="results/en50318, for own data with the names of the files")
 @line_fmu_option
 def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, output, **given) -> None:
     """Validate the simulation as EN 50318 does, and write a report.
 
     Without options: the reference case of EN 50318:2002 with its accepted ranges, what free choices do to it, the
-    benchmark of 2015, and the linear against the Z-spring head of the DSA-380. Takes about a minute on two
+    benchmark of 2015, and the linear against the Z-spring head of the DSA-380. Takes two to three minutes on two
     processors. Ctrl-C keeps all finished runs, and the same command goes on from there.
+
+    With --parameters or --set: this pantograph on the lines of the reference cases and of the benchmark, counted
+    apart from the reference pantograph.
 
     With --series, --line-test or --frf: the same report on your own data. A series is a CSV with the columns
     contact force [N], time [s] and/or position [m], and perhaps wire height [m] and support uplift at X m [mm].
@@ -121,29 +123,34 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
         copy_examples(given["example"], {"edition.toml": "en50318/example.toml"})
         return
     own = series or line_test or frf
-    for name, chosen in ("--parameters", pantograph.parameter_set), ("--set", pantograph.assignments):
-        if chosen and not frf:
-            raise click.UsageError(f"{name} is for --frf")
+    own_pantograph = bool(pantograph.parameter_set or pantograph.assignments)
+    if own_pantograph and own and not frf:
+        raise click.UsageError("--parameters and --set are for --frf and for our runs: a series has its own pantograph")
     for name in "case_title", "speed", "spans", "span", "first_support", "turn_force":
         if given[name] not in (None, ()) and not (series or line_test):
             raise click.UsageError(f"--{name.removesuffix('_title').replace('_', '-')} is for --series and --line-test")
+    if output is None:
+        output = Path("results", "-".join(["en50318", *(path.stem for path in (series, line_test, frf) if path)]))
     from .edition import packaged_edition, read_edition  # matplotlib and scipy are slow to load
 
     paths = [edition_path] if edition_path else [packaged_edition(name) for name in EDITIONS]
     editions = [read_edition(path) for path in paths]
     with (
-        pantograph.opened() as (fmu, parameters),
+        pantograph.opened(("drive",)) as (fmu, parameters),
         opened(given["line_fmu"] or installed_fmu(CATENARY)) as catenary,
         claimed(output),
     ):
         if not own:
+            from .own_pantograph import OwnPantograph, name_of
             from .plan import HEAD_SPEEDS
             from .run import Plan, validate
 
             if quick:
                 editions = [editions[0].only_first()]
-            speeds = given["head_speeds"] or (() if quick or edition_path else HEAD_SPEEDS)
-            plan = Plan(editions, not (quick or edition_path), speeds)
+            few = quick or edition_path or own_pantograph
+            speeds = given["head_speeds"] or (() if few else HEAD_SPEEDS)
+            name = name_of(pantograph.parameter_set, pantograph.assignments)
+            plan = Plan(editions, not few, speeds, OwnPantograph(name, parameters) if own_pantograph else None)
             validate(plan, catenary, fmu, output, jobs)
             return
         from ..bench.curves import Source

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -11,7 +12,23 @@ from .plan import Run
 from .workers import Finished
 
 FIGURE_COLUMNS = {name: f"{name} [{unit}]" if unit else name for name, (_, unit, _) in FIGURES.items()}
-COLUMNS = ["group", "of", "label", "speed [km/h]", "section", *FIGURE_COLUMNS.values(), "uplift [N]", "CPU [s]", "key"]
+SPANS = 4  # of a section at most, of which the figures by span are kept
+BY_SPAN = ("standard_deviation", "standard_deviation_5_20", "actual_minimum", "loss_of_contact")
+SPAN_COLUMNS = {
+    (name, n): f"span {n + 1} of the section: {FIGURE_COLUMNS[name]}" for n in range(SPANS) for name in BY_SPAN
+}
+COLUMNS = [
+    "group",
+    "of",
+    "label",
+    "speed [km/h]",
+    "section",
+    *FIGURE_COLUMNS.values(),
+    *SPAN_COLUMNS.values(),
+    "uplift [N]",
+    "CPU [s]",
+    "key",
+]
 
 
 def run_record(path: Path, head: Mapping[str, str]) -> Record[Finished]:
@@ -34,10 +51,13 @@ def put_in_order(record: Record[Finished], runs: Iterable[Run]) -> None:
 
 def _to_row(finished: Finished) -> list[object]:
     numbers = (float(finished.statistics[name]) for name in FIGURES)
-    return [*finished.told, *numbers, finished.uplift, f"{finished.seconds:.3f}", finished.key]
+    spans = (finished.by_span[n][name] if n < len(finished.by_span) else math.nan for name, n in SPAN_COLUMNS)
+    return [*finished.told, *numbers, *spans, finished.uplift, f"{finished.seconds:.3f}", finished.key]
 
 
 def _from_row(row: Mapping[str, str]) -> Finished:
     found = {name: float(row[column] or "nan") for name, column in FIGURE_COLUMNS.items()}
+    spans = ({name: float(row[SPAN_COLUMNS[name, n]] or "nan") for name in BY_SPAN} for n in range(SPANS))
+    by_span = tuple(span for span in spans if not math.isnan(span[BY_SPAN[0]]))
     told = tuple(row[name] for name in COLUMNS[:5])
-    return Finished(row["key"], told, found, float(row["uplift [N]"]), float(row["CPU [s]"]))
+    return Finished(row["key"], told, found, by_span, float(row["uplift [N]"]), float(row["CPU [s]"]))

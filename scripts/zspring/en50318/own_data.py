@@ -17,16 +17,16 @@ from ..interrupt import Interrupted, stop_on_interrupt
 from ..line.limits import of_series
 from ..line.series import Series, read_series, require_pressing
 from ..line.stated import SAME_SPEED, agreed
-from ..line.statistics import FIGURES, Section, Statistics, statistics
+from ..line.statistics import Section, Statistics, statistics
 from ..parameter_sets import LINES, chosen_set
 from ..tables import write_table
 from ..variables import Value, with_unit
-from . import about, plot, report
-from .edition import Case, Edition, agreement, judge
+from . import about, plot, report, summary
+from .edition import Case, Edition, Judgement, agreement, judge
 from .frf import LevelComparison, compare_frf
-from .page import Chapter, Picture, Table
+from .page import Cell, Chapter, Picture, Table, keep_other_reports
 from .plan import section_of, slug
-from .run import finish
+from .run import REPORT, finish
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,12 @@ class OwnData:
     first_support: float | None  # m, where span 1 begins
     pantograph: int
     turned: Sequence[str] = ()  # of "series" and "line-test", those whose forces have the other sign
+
+    def told(self) -> dict[str, str]:
+        """What was chosen, in words."""
+        return {name: str(value) for name, value in vars(self).items() if name != "edition"} | {
+            "edition": self.edition.name
+        }
 
     def read(self) -> dict[str, Series]:
         """The series by the title of their chapters. Raises ZSpringError as read_series does."""
@@ -97,29 +103,40 @@ def report_on(
 
     parameters, edges, direction    of the FRF, see compare_frf
     """
+    told = {"report": "on own data", **data.told()}
+    if source:
+        frf = {**vars(source), "bands": edges, "direction": direction, **parameters}
+        told |= {f"FRF, {name}": str(value) for name, value in frf.items()}
+    keep_other_reports(folder / REPORT, told)
     case = data.edition.case(data.case_title) if data.case_title else None
     given = data.read()
     section = data.section(case, catenary, given.values())
-    made, files, lines, found, settings = [], [], [], {}, {}
+    made, files, lines, found, settings, box = [], [], [], {}, {}, []
     for title, series in given.items():
         found[title] = statistics(series, section)
         require_pressing(f"{series.name}, {section}" if section else series.name, found[title]["mean_force"])
         made.append(series_chapter(series, section, case, title))
+        judged = judge(found[title], case.ranges) if case else []
+        box.append(summary.row(f"{title}: {series.name}", "", "", series.speed, section, judged, found[title]))
         tell(of_series(series, section), folder)
         settings[title] = series.name
     if found:
-        lines += report.as_lines(figures_table(found, str(section or "the whole series")))
+        lines += report.as_lines(report.figures_table(found, str(section or "the whole series")))
     if len(found) == 2:
         made.append(agreement_chapter(found["Simulation"], found["Line test"], data.edition))
+        judged = compared(found["Simulation"], found["Line test"], data.edition)
+        box.append(["Simulation against line test", *[""] * 4, summary.ended(judged), ""])
     if source:
         folder.mkdir(parents=True, exist_ok=True)
         chapter, written = frf_chapter(pantograph, source, parameters, edges, direction, folder, jobs)
         made.append(chapter)
         files += written
+        box.append([f"FRF: {source.path}", *[""] * 4, Cell("nothing is judged"), ""])
         settings["measured FRF"] = str(source.path)
         lines += [line for b in chapter.blocks if isinstance(b, Table) for line in report.as_lines(b)]
     lines += [b for chapter in made for b in chapter.blocks if isinstance(b, str) and "accepted ranges" in b]
-    written = finish(folder, [about.own_data(), *made], (pantograph,), settings, files)
+    chosen = [summary.chapter(box), about.own_data(), *made]
+    written = finish(folder, chosen, (pantograph,), settings, files, told)
     print(*lines, " ".join(["written:", *map(str, written)]), sep="\n")
 
 
@@ -142,14 +159,19 @@ def series_chapter(series: Series, section: Section | None, case: Case | None, t
     return chapter
 
 
-def agreement_chapter(simulated: Statistics, measured: Statistics, edition: Edition) -> Chapter:
-    """A simulation beside the line test."""
+def compared(simulated: Statistics, measured: Statistics, edition: Edition) -> list[Judgement]:
+    """Differences that both tell, beside what the edition accepts."""
     limits = {
         name: limit
         for name, limit in edition.agreement.items()
         if measured[name] and math.isfinite(measured[name]) and math.isfinite(simulated[name])
     }
-    judged = agreement(simulated, measured, limits)
+    return agreement(simulated, measured, limits)
+
+
+def agreement_chapter(simulated: Statistics, measured: Statistics, edition: Edition) -> Chapter:
+    """A simulation beside the line test."""
+    judged = compared(simulated, measured, edition)
     chapter = Chapter("Simulation and line test", [f"Accepted differences: {' '.join(edition.source.split())}"])
     if judged:
         chapter.blocks.append(report.verdict("Simulation against line test", {"the line test": judged}, "%") + ".")
@@ -193,12 +215,6 @@ def frf_chapter(
         "Pantograph: measured and computed FRF",
         [text, *missing, *(f"{r}." for r in comparison.remarks), table, picture],
     ), [path]
-
-
-def figures_table(found: Mapping[str, Statistics], caption: str) -> Table:
-    """Figures of the series side by side."""
-    rows = [[report.labelled(name), *(report.number(name, each[name]) for each in found.values())] for name in FIGURES]
-    return Table(caption, ["", *found], rows)
 
 
 def _write_frf(path: Path, fmu: Fmu, source: Source, comparisons: Sequence[LevelComparison]) -> None:

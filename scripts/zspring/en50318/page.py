@@ -7,9 +7,12 @@ nothing from outside.
 from __future__ import annotations
 
 import base64
+import html
 import importlib.resources
 import io
-from collections.abc import Sequence
+import json
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,6 +20,7 @@ import jinja2
 from matplotlib.figure import Figure
 
 from ..figures import save
+from ..records import keep_others
 
 GOOD, BAD, WORDS = "good", "bad", "words"
 
@@ -76,13 +80,22 @@ class Chapter:
         return [(names[type(block)], block) for block in self.blocks]
 
 
-def write_report(path: Path, title: str, chapters: Sequence[Chapter]) -> list[Path]:
-    """Write the page, and its pictures as PNG beside it; all paths written."""
+def keep_other_reports(path: Path, settings: Mapping[str, str]) -> None:
+    """To call before the work for a report. Raises ZSpringError where one of other settings is there."""
+    if path.exists():
+        found = re.search(r'<meta name="settings" content="(.*)">', path.read_text(encoding="utf-8", errors="replace"))
+        keep_others(path, settings, json.loads(html.unescape(found[1])) if found else {})
+
+
+def write_report(path: Path, title: str, chapters: Sequence[Chapter], settings: Mapping[str, str]) -> list[Path]:
+    """Write the page, and its pictures as PNG beside it; all paths written. `settings` tells reports apart."""
     template = importlib.resources.files(__package__).joinpath("page.html").read_text(encoding="utf-8")
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     path.parent.mkdir(parents=True, exist_ok=True)
-    page = environment.from_string(template).render(title=title, chapters=chapters)
-    path.write_text(page, encoding="utf-8")
+    page = environment.from_string(template).render(title=title, chapters=chapters, settings=json.dumps(settings))
+    unfinished = path.with_name(f"{path.name}.new")
+    unfinished.write_text(page, encoding="utf-8")
+    unfinished.replace(path)
     pictures = [block for chapter in chapters for block in chapter.blocks if isinstance(block, Picture)]
     for picture in pictures:
         save(picture.figure, path.parent / picture.file)

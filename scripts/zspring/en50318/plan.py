@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..line.journey import LineExtent
+from ..line.journey import FittedJourney, LineExtent
 from ..line.mean_force import mean_force
 from ..line.statistics import Section
+from ..line.waves import fastest, undisturbed_until
 from ..parameter_sets import ACCURATE_STEP, LINES, chosen_set
 from ..variables import Value, parse
 from .edition import Case, Edition
@@ -20,7 +22,10 @@ from .edition import Case, Edition
 HEAD_SPEEDS = (200.0, 225.0, 250.0, 275.0, 300.0, 325.0, 350.0)  # km/h
 SHOWN_HEADS = 300.0  # km/h at which the forces of the heads are drawn, if it is one of the speeds
 HEAD_LINE = "benchmark-2015"
-HEAD_SPANS = (4, 7)
+HEAD_SPANS = 4  # evaluated, the last before the far end is felt
+FIRST_HEAD_SPAN = 3  # of these at least: after a span of start-up from any place in the first
+STARTS = 8  # of the heads, even over the first span
+RUN_OUT = 0.4  # s beyond the evaluated spans, for the filter
 
 Parameters = Mapping[str, Value]
 
@@ -42,6 +47,7 @@ class Run:
     scheme: str = "implicit"
     start_up: str = "ramp"
     start: float | None = None  # m along the line; None: half a span
+    stop: float | None = None  # m; None: half a span before the end
     series: str = ""  # name of the file that its series is written to; none: not kept
 
     @property
@@ -89,11 +95,24 @@ CHOICES = (
     Choice("explicit coupling", run={"scheme": "explicit"}),
 )
 
+
+@dataclass(frozen=True)
+class Head:
+    """A head suspension to compare."""
+
+    label: str
+    pantograph: str  # set
+    given: Mapping[str, str]
+    every_start: bool = True  # or the first one alone, where a run shows that there is nothing to see
+    is_drawn: bool = True  # its force along the line
+
+
 HEADS = (
-    ("linear, k1", "dsa-380", {"suspension": "Linear"}),
-    ("Z-spring, regularized friction", "dsa-380-zspring", {"suspension": "ZSpring", "friction": "Regularized"}),
-    ("Z-spring, Coulomb friction", "dsa-380-zspring", {"suspension": "ZSpring", "friction": "Coulomb"}),
-    ("Z-spring linearized, rods free", "dsa-380-zspring", {"suspension": "LinearFree"}),
+    Head("linear, k1", "dsa-380", {"suspension": "Linear"}),
+    Head("Z-spring", "dsa-380-zspring", {"suspension": "ZSpring", "friction": "Regularized"}),
+    Head("Z-spring linearized, rods free", "dsa-380-zspring", {"suspension": "LinearFree"}),
+    Head("Z-spring, Coulomb friction", "dsa-380-zspring", {"suspension": "ZSpring", "friction": "Coulomb"}, False),
+    Head("Z-spring linearized, rods locked", "dsa-380-zspring", {"suspension": "LinearLocked"}, False, False),
 )
 
 
@@ -117,22 +136,42 @@ def sensitivity_runs(references: Sequence[Run]) -> list[Run]:
 
 
 def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPEEDS) -> list[Run]:
-    """The linear and the Z-spring head along the same line, with the mean force of the law for AC lines."""
+    """The heads along the same line, from several places of the first span.
+
+    Static force and uplift together are the mean force of the law for AC lines: nothing but 0.1 N/m holds the frame.
+    """
     line = chosen_set(HEAD_LINE, catenary, LINES)
     extent = LineExtent.of(catenary, line)
-    section = Section(*HEAD_SPANS, extent.span)
     shown = SHOWN_HEADS if SHOWN_HEADS in speeds else speeds[-1]
+    standing = mean_force("AC", 0.0)
     runs = []
     for speed in speeds:
-        for label, name, given in HEADS:
-            parameters = _pantograph(name, pantograph)
-            parameters |= {key: parse(pantograph.variables[key], text) for key, text in given.items()}
-            parameters["static_force"] = mean_force("AC", 0.0)
-            target = mean_force("AC", speed)
-            uplift = target - parameters["static_force"]
-            kept = f"{slug(label)}-{speed:g}-km-h.csv" if speed == shown else ""
-            runs.append(Run("heads", label, HEAD_LINE, speed, section, line, parameters, uplift, target, series=kept))
+        section = _head_section(speed, extent, fastest(catenary, line))
+        stop = min(section.bounds[1] + RUN_OUT * speed / 3.6, extent.length)
+        for head in HEADS:
+            parameters = _pantograph(head.pantograph, pantograph)
+            parameters |= {key: parse(pantograph.variables[key], text) for key, text in head.given.items()}
+            parameters["static_force"] = standing
+            run = Run(
+                "heads", head.label, HEAD_LINE, speed, section, line, parameters, mean_force("AC", speed) - standing
+            )
+            for i in range(STARTS if head.every_start else 1):
+                is_kept = head.is_drawn and speed == shown and i == 0
+                series = f"{slug(head.label)}-{speed:g}-km-h.csv" if is_kept else ""
+                runs.append(replace(run, start=i * extent.span / STARTS, stop=stop, series=series))
     return runs
+
+
+def _head_section(speed: float, extent: LineExtent, wave: float) -> Section:
+    """The spans to evaluate at `speed` km/h. Raises ZSpringError where the far end is felt before there is one."""
+    until = undisturbed_until(extent, FittedJourney(speed / 3.6, 0.0, extent.length), 0.0, wave)
+    last = math.floor(until / extent.span + 1e-9)
+    if last < FIRST_HEAD_SPAN:
+        raise ZSpringError(
+            f"--head-speeds {speed:g} km/h: too slow for the line of {extent.spans} spans, whose far end is felt from "
+            f"{until:.0f} m on"
+        )
+    return Section(max(FIRST_HEAD_SPAN, last - HEAD_SPANS + 1), last, extent.span)
 
 
 def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run:

@@ -114,8 +114,11 @@ def sensitivity_figure(
     return figure
 
 
-def heads_figure(found: Mapping[str, Mapping[float, Statistics]], title: str) -> Figure:
-    """Standard deviation in both bands, smallest force and loss of contact over the speed, by head."""
+def heads_figure(found: Mapping[str, Mapping[float, Mapping[str, np.ndarray]]], title: str) -> Figure:
+    """Standard deviation in both bands, smallest force and loss of contact over the speed, by head: mean and range.
+
+    found   by head, speed in km/h and figure the values of all starts (s,)
+    """
     figure = new_figure(10, 6.5)
     panels = figure.subplots(2, 2, sharex=True)
     shown = (
@@ -125,15 +128,21 @@ def heads_figure(found: Mapping[str, Mapping[float, Statistics]], title: str) ->
         ("loss_of_contact", "loss of contact  [%]"),
     )
     for axes, (name, label) in zip(panels.flat, shown):
-        for (head, by_speed), colour, style in zip(found.items(), COLOURS, ("o-", "s-", "D:", "^--")):
+        for i, ((head, by_speed), colour, style) in enumerate(zip(found.items(), COLOURS, ("o-", "s-", "^--", "D:"))):
             values = [each[name] for each in by_speed.values()]
-            axes.plot(list(by_speed), values, style, color=colour, label=head, linewidth=1.3, markersize=5)
+            means = np.array([each.mean() for each in values])
+            reach = np.abs([[each.min(), each.max()] for each in values] - means[:, None]).T
+            shift = 2.5 * (i - 1)  # km/h, so that the ranges do not hide each other
+            places = np.array(list(by_speed)) + shift
+            axes.errorbar(
+                places, means, reach, fmt=style, color=colour, label=head, linewidth=1.3, markersize=4, capsize=3
+            )
         axes.set_ylabel(label)
         axes.grid(True, linewidth=0.4, alpha=0.5)
-    panels[1, 1].set_ylim(bottom=0, top=max(1.0, 1.1 * panels[1, 1].get_ylim()[1]))
+    panels[1, 1].set_ylim(bottom=0, top=max(1.0, panels[1, 1].get_ylim()[1]))
     for axes in panels[1]:
-        axes.set_xlabel("speed  [km/h]")
-    panels[0, 0].legend(fontsize=8)
+        axes.set_xlabel("speed  [km/h], drawn side by side")
+    panels[0, 0].legend(fontsize=8, title="mean and range of all starts", title_fontsize=8)
     figure.suptitle(title)
     return figure
 

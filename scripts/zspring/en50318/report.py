@@ -12,10 +12,11 @@ from ..line.statistics import FIGURES, Statistics
 from ..parameter_sets import describe_set
 from ..text_tables import aligned
 from ..variables import text
-from .edition import DEVIATION_SHARE, Case, Judgement, sets_of
+from .edition import Case, Judgement, sets_of
 from .frf import LevelComparison
 from .page import BAD, GOOD, WORDS, Cell, Table
 from .plan import Run
+from .summary import share
 
 SENSITIVE = (
     "mean_force",
@@ -58,23 +59,29 @@ def case_table(found: Statistics, judgements: Sequence[Judgement], speed: float 
             judged = by_name.get(name)
             row += ["{:g} to {:g}".format(*judged.accepted), distance(judged)] if judged else ["", ""]
         rows.append(row)
-    mean = found["mean_force"]
-    share = found["standard_deviation"] / mean if mean > 0 else math.inf
-    inside = Cell("inside", GOOD) if share <= DEVIATION_SHARE else Cell("outside", BAD)
-    blank = [""] * (2 if judgements else 0)
-    label = f"standard deviation / mean force, at most {DEVIATION_SHARE:g}"
-    rows.append([label, f"{share:.3f}", *([Cell(""), inside] if judgements else [])])
+    part = share(found)
+    inside = Cell("inside", GOOD) if part.is_inside else Cell("outside", BAD)
+    blank: list[str | Cell] = [""] * (2 if judgements else 0)
+    judged_share: list[str | Cell] = [f"at most {part.accepted[1]:g}", inside] if judgements else []
+    label = f"{part.name}, of current collection"
+    rows.append([label, f"{part.value:.3f}", *judged_share])
     if speed:
         target = number("mean_force", mean_force("AC", speed))
         rows.append(["target mean force of AC lines, N", target, *blank])
     return Table(caption, ["", "found", *(["accepted", ""] if judgements else [])], rows)
 
 
+def figures_table(found: Mapping[str, Statistics], caption: str) -> Table:
+    """Figures of several series or runs side by side."""
+    rows: list[list[str | Cell]] = [
+        [labelled(name), *(number(name, each[name]) for each in found.values())] for name in FIGURES
+    ]
+    return Table(caption, ["", *found], rows)
+
+
 def spans_table(whole: Statistics, by_span: Mapping[str, Statistics], caption: str) -> Table:
     """The figures span by span, and over all of them."""
-    columns = {**by_span, "all": whole}
-    rows = [[labelled(name), *(number(name, found[name]) for found in columns.values())] for name in FIGURES]
-    return Table(caption, ["", *columns], rows)
+    return figures_table({**by_span, "all": whole}, caption)
 
 
 def sensitivity_table(
@@ -86,13 +93,6 @@ def sensitivity_table(
         outside = {judgement.name for judgement in judged[label] if not judgement.is_inside}
         rows.append([label, *(Cell(number(n, found[n]), BAD if n in outside else "") for n in SENSITIVE)])
     return Table(caption, ["", *map(labelled, SENSITIVE)], rows)
-
-
-def heads_table(found: Mapping[str, Mapping[float, Statistics]], name: str) -> Table:
-    """One figure by head and speed."""
-    speeds = list(next(iter(found.values())))
-    rows = [[head, *(number(name, by_speed[speed][name]) for speed in speeds)] for head, by_speed in found.items()]
-    return Table(labelled(name), ["", *(f"{speed:g} km/h" for speed in speeds)], rows)
 
 
 def agreement_table(simulated: Statistics, measured: Statistics, judgements: Sequence[Judgement]) -> Table:
@@ -164,13 +164,17 @@ def as_lines(table: Table) -> list[str]:
 
 def verdict(name: str, judged: Mapping[str, Sequence[Judgement]], unit: str | None = None) -> str:
     """One sentence on how many figures are inside their ranges; `unit` where it is not the figures' own."""
-    known = [(case, j) for case, each in judged.items() for j in each if not math.isnan(j.value)]
+    counted = [(case, j) for case, each in judged.items() for j in each]
+    known = [(case, j) for case, j in counted if not math.isnan(j.value)]
+    if not known:
+        return f"{name}: none of the {len(counted)} figures with accepted ranges is known"
+    unknown = f"; {len(counted) - len(known)} are not known" if len(known) < len(counted) else ""
     outside = [
         f"{FIGURES[j.name][0]} at {case} by {j.outside:+.3g} {unit or FIGURES[j.name][1]}"
         for case, j in known
         if not j.is_inside
     ]
     if not outside:
-        return f"{name}: all {len(known)} figures are inside their accepted ranges"
+        return f"{name}: all {len(known)} figures are inside their accepted ranges{unknown}"
     listed = ", ".join(outside)
-    return f"{name}: {len(outside)} of {len(known)} figures are outside their accepted ranges: {listed}"
+    return f"{name}: {len(outside)} of {len(known)} figures are outside their accepted ranges: {listed}{unknown}"

@@ -7,15 +7,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..fmu import Fmu
+from ..interrupt import Interrupted
 from ..line.statistics import BAND, ORDER
 from ..records import Record, fill
-from . import about, chapters, report
+from . import about, chapters, comparison, report, summary
 from .edition import Edition
 from .files import missing, put_in_order, run_record
-from .page import Chapter, write_report
+from .own_pantograph import OwnPantograph
+from .own_pantograph import lines as printed
+from .page import Chapter, keep_other_reports, write_report
 from .plan import Run, head_runs, reference_runs, sensitivity_runs
 from .workers import Finished, run_all
 
+OUR_RUNS = {"report": "on our runs"}  # of whatever plan: runs.csv has them all
+REPORT = "report.html"
 TITLE = "EN 50318: simulation of pantograph and overhead line"
 
 
@@ -26,6 +31,7 @@ class Plan:
     editions: Sequence[Edition]
     with_sensitivity: bool
     head_speeds: Sequence[float]
+    own: OwnPantograph | None = None  # on the lines of all cases
 
 
 def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int) -> None:
@@ -33,40 +39,65 @@ def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int
 
     Raises ZSpringError where a run cannot be made, Interrupted after Ctrl-C; finished runs are kept.
     """
+    keep_other_reports(folder / REPORT, OUR_RUNS)
+    record = run_record(folder / "runs.csv", _head(catenary, pantograph))
+    try:
+        _validate(plan, catenary, pantograph, folder, jobs, record)
+    except KeyboardInterrupt:
+        kept = f"{len(record.results)} runs are kept in {record.path}; the same command goes on from there"
+        raise Interrupted(f"interrupted: {kept}") from None
+
+
+def _validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int, record: Record[Finished]) -> None:
     references = [reference_runs(edition, catenary, pantograph) for edition in plan.editions]
+    own = [plan.own.runs(each) for each in references] if plan.own else []
     sensitivity = sensitivity_runs(references[0]) if plan.with_sensitivity else []
     heads = head_runs(catenary, pantograph, plan.head_speeds) if plan.head_speeds else []
-    runs = [*(run for each in references for run in each), *sensitivity, *heads]
-    record = run_record(folder / "runs.csv", _head(catenary, pantograph))
+    runs = [*(run for each in (*references, *own) for run in each), *sensitivity, *heads]
     speed = _run_missing(record, runs, catenary, pantograph, folder, jobs)
     done = {finished.key: finished for finished in record.results}
     found = {key: finished.statistics for key, finished in done.items()}
 
-    outcomes = [
-        chapters.outcome(edition, its_runs, done, folder) for edition, its_runs in zip(plan.editions, references)
-    ]
+    outcomes = [chapters.outcome(*each, done, folder) for each in zip(plan.editions, references)]
+    box = [row for each in outcomes for row in each.summary_rows()]
+    lines = [line for each in outcomes for line in _summary(each, catenary)]
     made = [chapters.edition_chapter(each, catenary, pantograph) for each in outcomes]
     if sensitivity:
-        made.insert(1, chapters.sensitivity_chapter(outcomes[0], sensitivity, found))
-    lines = [line for each in outcomes for line in _summary(each, catenary)]
-    if sensitivity:
-        lines.append(str(made[1].blocks[1]).removesuffix("."))
+        counted = chapters.choices(outcomes[0], sensitivity, found)
+        made.insert(1, chapters.sensitivity_chapter(outcomes[0], counted))
+        lines.append(report.departures(chapters.judged_choices(outcomes[0], counted)))
+    if plan.own:
+        pairs = list(zip(outcomes, (chapters.outcome(*each, done, folder) for each in zip(plan.editions, own))))
+        made.insert(0, plan.own.chapter(pairs, pantograph, catenary))
+        box = [row for _, mine in pairs for row in plan.own.summary_rows(mine)] + box
+        lines = [line for each, mine in pairs for line in printed(plan.own.name, mine, each, catenary)] + lines
     if heads:
-        made.append(chapters.heads_chapter(heads, found, folder))
-        by_head = chapters.heads(heads, found)
-        for name in ("standard_deviation", "loss_of_contact"):
-            lines += ["", *report.as_lines(report.heads_table(by_head, name))]
+        compared = comparison.by_head(heads, done)
+        made.append(comparison.chapter(heads, compared, catenary, folder))
+        lines += comparison.printed(compared)
+        box.append(comparison.summary_row(heads))
     series = [folder / run.series for run in runs if run.series]
-    written = finish(folder, [about.own_runs(), *made], (catenary, pantograph), {}, [record.path, *series])
+    first = summary.chapter(box)
+    chosen = [first, about.own_runs(), *made]
+    written = finish(folder, chosen, (catenary, pantograph), {}, [record.path, *series], OUR_RUNS)
     print(*lines, "", speed, f"written: {written[0]} and {len(written) - 1} files beside it", sep="\n")
 
 
 def finish(
-    folder: Path, made: Sequence[Chapter], fmus: Sequence[Fmu], settings: Mapping[str, str], files: Sequence[Path]
+    folder: Path,
+    made: Sequence[Chapter],
+    fmus: Sequence[Fmu],
+    listed: Mapping[str, str],
+    files: Sequence[Path],
+    settings: Mapping[str, str],
 ) -> list[Path]:
-    """Write the report, after these chapters those of every report; all paths, that of the report first."""
-    last = about.made_with(fmus, settings, files)
-    page, *pictures = write_report(folder / "report.html", TITLE, [*made, about.method(), last])
+    """Write the report, after these chapters those of every report; all paths, that of the report first.
+
+    listed      in the report, with the versions
+    settings    that tell it from others
+    """
+    last = about.made_with(fmus, listed, files)
+    page, *pictures = write_report(folder / REPORT, TITLE, [*made, about.method(), last], settings)
     return [page, *files, *pictures]
 
 
@@ -104,6 +135,7 @@ def _summary(made: chapters.Outcome, catenary: Fmu) -> list[str]:
     lines = report.as_lines(report.Table("", [made.edition.name, *titles], rows))
     if any(judged.values()):
         lines.append(report.verdict(made.edition.name, judged))
+    lines.append(summary.shares(made.edition.name, dict(zip(titles, made.found))))
     return [*lines, *made.remarks(catenary), ""]
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ..errors import ZSpringError
 from ..fmu import Fmu
+from ..interrupt import held_back
 from ..line.journey import Journey
 from ..line.mean_force import uplifts_for
 from ..line.result import LineResult, write_result
@@ -31,6 +32,7 @@ class Finished:
     key: str  # of the run
     told: tuple[str, ...]  # group, of, label, speed in km/h, section
     statistics: Statistics
+    by_span: tuple[Statistics, ...]  # the same of each span of the section
     uplift: float  # N, as chosen for a mean force, or as given
     seconds: float  # of CPU
 
@@ -52,7 +54,8 @@ def run_all(
         busy: set[Future[Finished]] = set()
         while busy or (waiting and not stop.is_set()):
             while waiting and len(busy) < jobs and not stop.is_set():
-                busy.add(pool.submit(_execute, waiting.pop(0), folder))
+                with held_back():  # submitting starts processes, which are no business of Ctrl-C
+                    busy.add(pool.submit(_execute, waiting.pop(0), folder))
             done, busy = wait(busy, timeout=0.5, return_when=FIRST_COMPLETED)
             for future in done:
                 try:
@@ -76,7 +79,7 @@ def _execute(run: Run, folder: Path) -> Finished:
     results: list[LineResult] = []
 
     def means(uplifts: tuple[float, ...]) -> list[float]:
-        journey = Journey(run.speed / 3.6, run.start, step=run.step, start_up=run.start_up, uplift=uplifts)
+        journey = Journey(run.speed / 3.6, run.start, run.stop, run.step, start_up=run.start_up, uplift=uplifts)
         system = System(catenary, pantograph, run.line, [run.pantograph], journey, Coupling(run.scheme))
         results.append(run_line(system))
         return [statistics(results[-1].series(0), run.section)["mean_force"]]
@@ -87,7 +90,9 @@ def _execute(run: Run, folder: Path) -> Finished:
             means(uplift)
         else:
             uplift = uplifts_for(run.mean_force, uplift, means)
-        found = statistics(results[-1].series(0), run.section)
+        series = results[-1].series(0)
+        found = statistics(series, run.section)
+        by_span = tuple(statistics(series, span) for span in run.section.single_spans())
     except ZSpringError as error:
         raise ZSpringError(f"{run.of}, {run.label}, {run.speed:g} km/h: {error}") from None
     if run.series:
@@ -96,4 +101,4 @@ def _execute(run: Run, folder: Path) -> Finished:
         write_result(results[-1], unfinished)
         os.replace(unfinished, path)
     told = run.group, run.of, run.label, repr(run.speed), str(run.section)
-    return Finished(run.key, told, found, uplift[0], sum(result.elapsed for result in results))
+    return Finished(run.key, told, found, by_span, uplift[0], sum(result.elapsed for result in results))
