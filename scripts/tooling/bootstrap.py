@@ -1,9 +1,9 @@
 """Set-up shared by the commands in scripts/: the built package in the virtual environment .venv.
 
 Done in stages, each repeated when what it depends on has changed: the environment with the dependencies of
-pyproject.toml, the package zspring with its FMUs; for the tests also all extras of pyproject.toml, the C++
-probes and a headless browser; for a release its dependency groups. A stage is struck from the stamp file before it
-starts and written there when it is complete, so an interruption costs that stage only.
+pyproject.toml, the package zspring with its FMUs; for measurements the C++ probes, for the tests also all extras of
+pyproject.toml and a headless browser; for a release its dependency groups. A stage is struck from the stamp file before
+it starts and written there when it is complete, so an interruption costs that stage only.
 Needs nothing but the standard library.
 """
 
@@ -50,6 +50,10 @@ PACKAGE_SOURCES = [
     "scripts/zspring",
 ]
 RESEARCH = "scripts/research"
+
+# Stages beyond the environment and the package.
+MEASUREMENTS = ("probes",)
+TESTS = ("extras", "research", "probes", "browser")
 
 
 def environment() -> dict[str, str]:
@@ -219,18 +223,20 @@ def install_browser(runner: Runner, _compiler: str) -> None:
     )  # .venv's node before any other
 
 
-def set_up(with_probes: bool, groups: Sequence[str]) -> None:
-    """Bring .venv and the builds up to date; returns at once where they are."""
+def set_up(also: Sequence[str], groups: Sequence[str]) -> None:
+    """Bring .venv and the builds up to date, these stages and groups as well; returns at once where they are."""
     wanted = {
         "python": python_identity(),
         "requirements": fingerprint("pyproject.toml", also=os.environ.get("CXX", "")),
         "package": fingerprint(*PACKAGE_SOURCES),
     }
-    if with_probes:
-        wanted["extras"] = wanted["requirements"]
-        wanted["research"] = fingerprint(RESEARCH, "modelDescription.xml")
-        wanted["probes"] = fingerprint(*PROBE_SOURCES)
-        wanted["browser"] = fingerprint("tests/browser/package.json")
+    sources = {
+        "research": (RESEARCH, "modelDescription.xml"),
+        "probes": PROBE_SOURCES,
+        "browser": ("tests/browser/package.json",),
+    }
+    for stage in also:
+        wanted[stage] = fingerprint(*sources[stage]) if stage in sources else wanted["requirements"]
     for group in groups:
         wanted[group] = wanted["requirements"]
 
@@ -269,20 +275,21 @@ def set_up(with_probes: bool, groups: Sequence[str]) -> None:
         say(f"ready after {time.monotonic() - begin:.0f} s")
 
 
-def run(command: list[str], with_probes: bool = False, groups: Sequence[str] = (), folder: Path | None = None) -> None:
+def run(command: list[str], also: Sequence[str] = (), groups: Sequence[str] = (), folder: Path | None = None) -> None:
     """Set up, then become `command`, whose first item is a program of .venv; `folder` is where to start it.
 
-    With probes it finds the folder of the C++ test programs in the environment variable ZSPRING_PROBES, and the
-    modules of tests/helpers. `groups` are dependency groups of pyproject.toml to install as well.
+    `also` are MEASUREMENTS or TESTS: with probes it finds the folder of the C++ test programs in the environment
+    variable ZSPRING_PROBES, and the modules of tests/helpers. `groups` are dependency groups of pyproject.toml to
+    install as well.
     """
     try:
-        set_up(with_probes, groups)
+        set_up(also, groups)
     except (SetupError, OSError) as error:
         sys.exit(f"set-up: {error}")
     except KeyboardInterrupt:
         sys.exit("set-up: interrupted; start it again to go on")
     variables = environment()
-    if with_probes:
+    if "probes" in also:
         variables |= {"ZSPRING_PROBES": str(PROBES), "PYTHONPATH": str(ROOT / "tests" / "helpers")}
     program = [str(BIN / command[0]), *command[1:]]
     if folder:

@@ -26,10 +26,15 @@ from .study.command import study
 RESEARCH = ("newton", "integrators")  # commands of scripts/research, a package of its own
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100}, invoke_without_command=True
+)
 @click.version_option(package_name="zspring")
-def commands() -> None:
+@click.pass_context
+def commands(context: click.Context) -> None:
     """DSA-380 pantograph with Z-spring head suspension, as an FMI 2.0 co-simulation FMU."""
+    if context.invoked_subcommand is None:
+        print(context.get_help())
 
 
 def research_command(name: str) -> click.Command:

@@ -28,5 +28,9 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 
 
 def missing_extra(packages: Iterable[str], extra: str) -> ZSpringError:
-    """What to tell when packages of an extra of pyproject.toml are not installed."""
-    return ZSpringError(f"{', '.join(packages)} not installed: in the clone, pip install '.[{extra}]'")
+    """What to tell when packages of an extra of pyproject.toml are not installed.
+
+    The command adds them to the environment that runs, without building the package again.
+    """
+    python = f'"{sys.executable}"' if " " in sys.executable else sys.executable
+    return ZSpringError(f'{", ".join(packages)} not installed: {python} -m pip install "zspring[{extra}]"')

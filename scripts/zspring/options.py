@@ -18,9 +18,28 @@ import click
 from .errors import ZSpringError
 from .fmu import Fmu
 from .parameter_sets import ACCURATE_STEP, PANTOGRAPHS, chosen_set
+from .tables import LARGEST
 from .variables import Value
 
 MOST_NUMBERS = 100_000
+
+
+class _Finite(click.ParamType):
+    """Refuses nan and inf, which are numbers to click, before a number's type."""
+
+    def convert(self, value, param, ctx) -> float:
+        number = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{value!r}: must be a finite number", param, ctx)
+        return number
+
+
+class Number(_Finite, click.types.FloatParamType):
+    """A finite number."""
+
+
+class NumberRange(_Finite, click.FloatRange):
+    """A finite number between bounds."""
 
 
 class Numbers(click.ParamType):
@@ -39,7 +58,7 @@ class Numbers(click.ParamType):
             values = [float(text) for text in part.split(":")]
         except ValueError:
             values = []
-        if len(values) not in (1, 3) or not all(math.isfinite(value) and value > 0 for value in values):
+        if len(values) not in (1, 3) or not all(0 < value < LARGEST for value in values):
             self.fail(f"{part!r}: must be a positive number or START:STOP:STEP", param, ctx)
         if len(values) == 1:
             return values
@@ -79,10 +98,10 @@ class Spans(click.ParamType):
 
 
 FILE = click.Path(path_type=Path, dir_okay=False)
-POSITIVE = click.FloatRange(min=0, min_open=True)
+NUMBER, POSITIVE, NOT_NEGATIVE = Number(), NumberRange(min=0, min_open=True), NumberRange(min=0)
 
 
-def option(*names: str, help: str, default=None, kind=float, metavar: str | None = None):
+def option(*names: str, help: str, default=None, kind=NUMBER, metavar: str | None = None):
     """click's option, which shows its default unless `help` tells it in words."""
     shown = default is not None and "[default: " not in help
     return click.option(*names, type=kind, default=default, show_default=shown, metavar=metavar, help=help)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -19,6 +18,7 @@ from .tables import TableFile, read_rows, write_table
 T = TypeVar("T")
 
 REMEDY = "remove it, or give another --output"
+LONGEST_SHOWN = 80  # characters of a setting
 
 
 class Record(Generic[T]):
@@ -147,9 +147,19 @@ def _difference(there: Mapping[str, str], here: Mapping[str, str]) -> str:
     for key in (key for key in [*here, *there] if key != "date"):
         before, now = there.get(key), here.get(key, "").strip()
         if before != now:
-            return f"{key}: {_shown(before)}, now {_shown(now)}"
+            shown = _shown(before or "none", now or "none")
+            return f"{key}: {shown[0]}, now {shown[1]}"
     return ""
 
 
-def _shown(value: str | None) -> str:
-    return textwrap.shorten(value or "none", 80, placeholder=" ...")
+def _shown(before: str, now: str) -> tuple[str, str]:
+    """Both texts; of long ones what is near to their first difference."""
+    alike = next((i for i, (a, b) in enumerate(zip(before, now)) if a != b), min(len(before), len(now)))
+    is_long = max(len(before), len(now)) > LONGEST_SHOWN
+    begin = max(alike - LONGEST_SHOWN // 4, 0) if is_long else 0
+
+    def cut(text: str) -> str:
+        end = begin + LONGEST_SHOWN
+        return f"{'... ' * (begin > 0)}{text[begin:end]}{' ...' * (len(text) > end)}"
+
+    return cut(before), cut(now)

@@ -17,6 +17,7 @@ from pydantic import (
     Field,
     Strict,
     ValidationError,
+    ValidationInfo,
     WrapValidator,
     model_validator,
 )
@@ -159,11 +160,18 @@ def fitting(message: str, fits: Callable[[Any], bool] = lambda value: True) -> W
 def set_name(kind: str) -> AfterValidator:
     """For a text: a set's name in the package, or else the path of a file beside the settings."""
     known = packaged_sets(kind)
-    return AfterValidator(lambda name, info: name if not name or name in known else str(info.context / name))
+    return AfterValidator(lambda name, info: name if not name or name in known else str(_beside(name, info)))
+
+
+def _beside(path: Path | str, info: ValidationInfo) -> Path:
+    """The path as seen from the folder of the settings."""
+    if "\0" in str(path):
+        raise ValueError("must be a path")
+    return (info.context or Path()) / path
 
 
 ALL_FREQUENCIES = (0.0, math.inf)
 Pair = Annotated[tuple[float, float], Strict(False)]  # strictly, TOML's lists are no tuples, and its texts no paths
 Band = Annotated[Pair, fitting("must be [lowest, highest] frequency in Hz", lambda band: 0 <= band[0] < band[1])]
-BesidePath = Annotated[Path, Strict(False), AfterValidator(lambda path, info: info.context / path)]
+BesidePath = Annotated[Path, Strict(False), AfterValidator(_beside)]
 Positive = Annotated[float, Field(gt=0)]

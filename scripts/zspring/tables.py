@@ -24,6 +24,7 @@ from .units import conversion, is_unit
 _DECIMAL = re.compile(r"[-+]?\d*([.,])\d+(?:[eE][-+]?\d+)?|[-+]?\d+([.,])")
 _IN_BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\((.*)\))")
 _IN_UNDERSCORES = re.compile(r"(.*?)_([^\W_]+)_")
+LARGEST = 1e100  # that is read: nothing in these units is so large, and squares and products stay numbers
 _CONTROL = re.compile(r"[\0-\x08\x0e-\x1f]")
 
 
@@ -111,7 +112,7 @@ class Table:
             number = float(cell.replace(",", ".") if self.decimal == "," else cell)
         except ValueError:
             number = math.nan
-        if not math.isfinite(number):
+        if not abs(number) < LARGEST:
             raise ZSpringError(f"{self.path}, line {line}: {name} = {cell!r}: must be a finite number")
         return number
 

@@ -54,7 +54,8 @@ def test_commands_run_at_half_a_millisecond_unless_told_otherwise(tmp_path):
     own.write_text(
         '<ssv:ParameterSet xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues" version="1.0" '
         'name="own"><ssv:Parameters><ssv:Parameter name="solver.step"><ssv:Real value="0.001" unit="s"/>'
-        "</ssv:Parameter></ssv:Parameters></ssv:ParameterSet>"
+        '</ssv:Parameter><ssv:Parameter name="m2"><ssv:Real value="6"/></ssv:Parameter>'
+        "</ssv:Parameters></ssv:ParameterSet>"
     )
     for parameter_set, assignments, step in (
         (None, [], 5e-4),
@@ -65,7 +66,7 @@ def test_commands_run_at_half_a_millisecond_unless_told_otherwise(tmp_path):
         with Pantograph(None, parameter_set, assignments).opened() as (_, parameters):
             assert parameters["solver.step"] == step
     with Pantograph(None, str(own), []).opened(("solver.step",)) as (_, parameters):
-        assert "solver.step" not in parameters
+        assert parameters == {"m2": 6.0}
 
 
 def test_a_coulomb_point_settles_where_2_ms_have_a_cycle_of_their_own(tmp_path):
@@ -389,9 +390,9 @@ def test_names_that_the_terminal_cannot_show_are_no_failure(tmp_path, encoding):
         (["simulate", "--input", "absent.csv"], ["absent.csv"]),
         (["simulate", "--step", "0"], ["0"]),
         (["simulate", "--stop", "-1"], ["-1"]),
-        (["simulate", "--step", "inf"], ["by inf s", "step above 0", "finite"]),
-        (["simulate", "--step", "nan"], ["by nan s", "step above 0", "finite"]),
-        (["simulate", "--stop", "inf"], ["to inf s", "stop", "above the start", "finite"]),
+        (["simulate", "--step", "inf"], ["--step", "inf", "finite"]),
+        (["simulate", "--step", "nan"], ["--step", "nan", "finite"]),
+        (["simulate", "--stop", "inf"], ["--stop", "inf", "finite"]),
         (["info", "zspring.x"], ["zspring.x"]),
         (["info", "--catenary", "--fmu", "some.fmu"], ["some.fmu", "--catenary"]),
         (["fly"], ["fly"]),

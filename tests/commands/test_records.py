@@ -11,7 +11,8 @@ import pytest
 from commands import in_process, zspring
 from zspring.errors import ZSpringError
 from zspring.interrupt import Interrupted
-from zspring.records import Record, claimed, fill
+from zspring.records import Record, claimed, fill, keep_others
+from zspring.tables import write_table
 
 HEAD = {"date": "today", "step": "2 ms"}
 
@@ -59,6 +60,7 @@ def test_work_that_cannot_begin_leaves_nothing(tmp_path):
     ("head", "line", "complaint"),
     [
         ({**HEAD, "step": "1 ms"}, "", r"is of other settings \(step: 2 ms, now 1 ms\): remove it, or give"),
+        ({**HEAD, "step": 99 * "a" + "1 ms"}, "", rf"\(step: 2 ms, now {80 * 'a'} \.\.\.\)"),
         ({**HEAD, "law": "Coulomb"}, "", r"is of other settings \(law: none, now Coulomb\)"),
         (HEAD, "4,two\n", "is not as it was written: remove it, or give another --output"),
         (HEAD, "4\n", "is not as it was written"),
@@ -72,6 +74,15 @@ def test_results_of_other_settings_and_damaged_ones_are_refused_and_stay(tmp_pat
     with pytest.raises(ZSpringError, match=complaint):
         record(path, head)
     assert path.read_bytes() == before
+
+
+def test_of_long_settings_what_differs_is_told(tmp_path):
+    long = ["a" * 200 + end for end in ("1" + "b" * 200, "2")]
+    write_table(tmp_path / "a.csv", {"setting": long[0]}, ["x"], [])
+    keep_others(tmp_path / "a.csv", {"setting": long[0]})
+    shown = rf"\(setting: \.\.\. {20 * 'a'}1{59 * 'b'} \.\.\., now \.\.\. {20 * 'a'}2\)"
+    with pytest.raises(ZSpringError, match=shown):
+        keep_others(tmp_path / "a.csv", {"setting": long[1]})
 
 
 def hold(folder: Path, started, end) -> None:
@@ -123,6 +134,27 @@ def test_finished_results_are_repeated_but_not_overwritten_by_others(tmp_path, c
         rf"zspring: {out / file} is of other settings \({differs}\): remove it, or give another --output\n", err
     )
     assert {path: path.read_bytes() for path in out.iterdir()} == before
+
+
+def test_a_fit_is_repeated_but_not_overwritten_by_one_with_other_settings_or_data(tmp_path):
+    rows = ["2,1,0.034,0.0243", "2.5,1,0.0243,0.0275", "3,1,0.008,0.035"]
+    text = "frequency [Hz],amplitude [m/s2],real [(m/s2)/N],imaginary [(m/s2)/N]\n" + "\n".join(rows) + "\n"
+    toml = (
+        'model = "linear"\n[[measurement]]\nfile = "b.csv"\n[free]\nk1 = { start = 9000, min = 5000, max = 20000 }\n'
+        "[search]\ngenerations = 0\n"
+    )
+    (tmp_path / "b.csv").write_text(text)
+    (tmp_path / "fit.toml").write_text(toml)
+    command = ["identify", tmp_path / "fit.toml", "--output", tmp_path / "out", "--jobs", "1"]
+    assert [in_process(*command)[0] for _ in range(2)] == [0, 0]
+    before = (tmp_path / "out/fitted.ssv").read_bytes()
+    (tmp_path / "fit.toml").write_text(toml.replace("start = 9000", "start = 9500"))
+    _, _, err = in_process(*command)
+    assert re.search(r"fit\.csv is of other settings \(setting free: .*start=9000.*, now .*start=9500", err)
+    (tmp_path / "fit.toml").write_text(toml)
+    (tmp_path / "b.csv").write_text(text.replace("0.0243", "0.0244"))
+    assert "fit.csv is of other settings (file 1: " in in_process(*command)[2]
+    assert (tmp_path / "out/fitted.ssv").read_bytes() == before
 
 
 def test_a_file_of_somebody_else_is_no_result_to_overwrite(tmp_path):

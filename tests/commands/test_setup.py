@@ -44,16 +44,16 @@ def bootstrap(monkeypatch, tmp_path):
 
 def test_a_set_up_goes_on_with_the_stage_that_failed(bootstrap):
     with pytest.raises(bootstrap.SetupError, match="no package"):
-        bootstrap.set_up(with_probes=False, groups=())
+        bootstrap.set_up(also=(), groups=())
     bootstrap.broken.clear()
     for _ in range(2):  # the second time all is there
-        bootstrap.set_up(with_probes=False, groups=())
+        bootstrap.set_up(also=(), groups=())
     assert bootstrap.stages == ["environment", "package", "package"]
 
 
 def test_a_dependency_that_is_lost_is_noticed_after_a_stage_that_failed(bootstrap):
     with pytest.raises(bootstrap.SetupError):
-        bootstrap.set_up(with_probes=False, groups=())
+        bootstrap.set_up(also=(), groups=())
     assert bootstrap.read_stamp()["dependencies"] == ["numpy"]
     (bootstrap.site_packages() / "numpy").rmdir()
     assert bootstrap.read_stamp() == {}
@@ -62,12 +62,30 @@ def test_a_dependency_that_is_lost_is_noticed_after_a_stage_that_failed(bootstra
 def test_a_stamp_without_dependencies_is_completed(bootstrap):
     """As earlier versions left it when a stage failed."""
     bootstrap.broken.clear()
-    bootstrap.set_up(with_probes=False, groups=())
+    bootstrap.set_up(also=(), groups=())
     stamp = bootstrap.read_stamp()
     bootstrap.write_stamp({key: stamp[key] for key in ("python", "requirements", "compiler")})
-    bootstrap.set_up(with_probes=False, groups=())
+    bootstrap.set_up(also=(), groups=())
     assert bootstrap.stages == ["environment", "package", "package"]
     assert bootstrap.read_stamp()["dependencies"] == ["numpy"]
+
+
+def test_measurements_need_no_browser_and_tests_need_all(bootstrap, monkeypatch):
+    for stage, function in (
+        ("extras", "install_extras"),
+        ("research", "install_research"),
+        ("browser", "install_browser"),
+    ):
+        monkeypatch.setattr(bootstrap, function, lambda *_, stage=stage: bootstrap.stages.append(stage))
+    monkeypatch.setattr(bootstrap, "build_probes", lambda *_: bootstrap.stages.append("probes"))
+    bootstrap.broken.clear()
+    bootstrap.set_up(also=bootstrap.MEASUREMENTS, groups=())
+    assert bootstrap.stages == ["environment", "package", "probes"]
+    for folder in "zspring_research", "numpy":
+        (bootstrap.site_packages() / folder).mkdir(exist_ok=True)
+    monkeypatch.setattr(bootstrap, "PROBES", bootstrap.BUILD)
+    bootstrap.set_up(also=bootstrap.TESTS, groups=())
+    assert bootstrap.stages[3:] == ["extras", "research", "browser"]
 
 
 @pytest.mark.parametrize("name", ["benchmark", "trust", "mutants"])

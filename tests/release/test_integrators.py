@@ -232,4 +232,4 @@ def test_a_missing_extra_is_named(missing):
     code = f"import sys; sys.modules[{missing!r}] = None; from zspring.cli import main; sys.exit(main())"
     done = subprocess.run([sys.executable, "-c", code, "integrators"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
-    assert done.stderr == f"zspring: {missing} not installed: in the clone, pip install '.[research]'\n"
+    assert done.stderr == f'zspring: {missing} not installed: {sys.executable} -m pip install "zspring[research]"\n'

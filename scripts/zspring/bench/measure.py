@@ -78,7 +78,8 @@ class FrfPoint:
     @property
     def displacement(self) -> float:
         """Peak displacement of the head in m."""
-        return self.amplitude / (2 * math.pi * self.frequency) ** 2
+        omega = 2 * math.pi * self.frequency
+        return self.amplitude / omega / omega  # whose square may be beyond what numbers can be
 
 
 @dataclass(frozen=True)

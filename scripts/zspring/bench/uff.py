@@ -129,11 +129,12 @@ def _curve(file: UniversalFile, data: DataSet, factors: DataSet | None, amplitud
     if data["ord_data_type"] not in COMPLEX:
         raise ZSpringError(f"ordinate of data type {data['ord_data_type']}, real: the phase is missing")
     factor = _factor(data, "ordinate", numerator, factors) / _factor(data, "orddenom", denominator, factors)
-    sign = 1 if data["rsp_dir"] * data["ref_dir"] >= 0 else -1
     to_hertz = _to_hertz(data)
 
     x, ordinate = file.values(data)
-    frequency, value = to_hertz * x, sign * ordinate.astype(complex)
+    frequency, value = to_hertz * x, ordinate.astype(complex)
+    if data["rsp_dir"] * data["ref_dir"] < 0:
+        value = -value
     if to_hertz != 1 and not data["abscissa_spacing"]:  # the file has six digits, and no more are known of them in Hz
         frequency = np.array([float(f"{f:.6g}") for f in frequency])
     kept = frequency > 0  # a static line says nothing about a response over acceleration

@@ -72,7 +72,8 @@ class UniversalFile:
 
     def _read(self, number: int, header_only: bool) -> dict[str, Any]:
         try:
-            return self._file.read_sets(number - 1, header_only=header_only)
+            with np.errstate(invalid="ignore"):  # of numbers that are not finite
+                return self._file.read_sets(number - 1, header_only=header_only)
         except Exception as error:  # pyuff raises nothing more specific, about what went wrong before
             reason: BaseException = error
             while reason.__context__:

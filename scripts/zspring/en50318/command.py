@@ -10,6 +10,7 @@ from ..bench.conditions import DIRECTIONS
 from ..fmu import CATENARY, installed_fmu
 from ..options import (
     FILE,
+    NOT_NEGATIVE,
     POSITIVE,
     Spans,
     WholeNumbers,
@@ -92,7 +93,7 @@ EDITIONS = ("en-50318-2002", "benchmark-2015")
 @option(
     "--fixture-mass",
     default=0.0,
-    kind=click.FloatRange(min=0),
+    kind=NOT_NEGATIVE,
     metavar="M",
     help="What moves between load cell and head in the measured FRF, in kg.",
 )

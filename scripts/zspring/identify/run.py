@@ -25,8 +25,8 @@ from ..fmu import Fmu
 from ..heads import file_head
 from ..interrupt import Interrupted, stop_on_interrupt
 from ..parameter_sets import write_set
-from ..records import Record
-from ..tables import write_table
+from ..records import Record, keep_others
+from ..tables import read_rows, write_table
 from ..variables import Value, parse, with_unit
 from . import report
 from .fit import Fit, fit
@@ -65,6 +65,7 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
             print(warning, file=sys.stderr)
     defaults = {v.name: parse(v, v.start) for v in fmu.variables if v.causality == "parameter"}
 
+    _keep_others(folder / "fit.csv", _head(fmu, settings))
     folder.mkdir(parents=True, exist_ok=True)
     with stop_on_interrupt() as stop, _Log(folder / "identify.log") as log, fmu.instances(jobs) as instances:
         bench = BenchModel(instances, settings.direction or FILE_ORDER, stop)
@@ -117,6 +118,23 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
     print("written:", *paths, folder / "identify.log")
 
 
+def _head(fmu: Fmu, settings: Settings) -> dict[str, str]:
+    """All that defines a fit."""
+    files = [*(source.path for source in settings.sources), *([settings.static.path] if settings.static else [])]
+    return {
+        "SHA-256 of the FMU": fmu.sha256,
+        **{f"setting {key}": repr(value) for key, value in settings},
+        **{f"file {i}": f"{hashlib.sha256(path.read_bytes()).hexdigest()} {path}" for i, path in enumerate(files, 1)},
+    }
+
+
+def _keep_others(path: Path, head: Mapping[str, str]) -> None:
+    """As keep_others; what was fitted stands in the head of fit.csv, too, and is no setting."""
+    if path.exists():
+        found = read_rows(path)[0]
+        keep_others(path, head, {key: found[key] for key in head if key in found})
+
+
 def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[np.ndarray, Record[Cost]]:
     """Where to begin the fit, and the record of the search, which may be removed after it.
 
@@ -124,13 +142,7 @@ def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[
     """
     settings = problem.settings
     coarse = problem.thinned(settings.search.points)
-    files = [*(source.path for source in settings.sources), *([settings.static.path] if settings.static else [])]
-    head = {
-        "FMU": fmu.sha256,
-        "settings": repr(settings),
-        **{f"file {i}": f"{hashlib.sha256(path.read_bytes()).hexdigest()} {path}" for i, path in enumerate(files, 1)},
-    }
-    record = cost_record(folder / "search.partial.csv", head, list(settings.free))
+    record = cost_record(folder / "search.partial.csv", _head(fmu, settings), list(settings.free))
     if record.results:
         print(f"going on after {len(record.results)} candidates in {record.path}")
     with record, tqdm(total=settings.search.generations, desc="search", unit=" generations", disable=None) as bar:
@@ -214,12 +226,7 @@ def _preload(fmu: Fmu, values: Mapping[str, Value], settings: Settings) -> str:
 
 def _write_points(fmu: Fmu, problem: Problem, result: Fit, path: Path) -> Path:
     settings = problem.settings
-    own = {
-        "measured": " ".join(str(source.path) for source in settings.sources),
-        "model": settings.model,
-        "error": settings.error,
-        "H": FrfSettings().described()["H"],
-    }
+    own = {**_head(fmu, settings), "H": FrfSettings().described()["H"]}
     columns = ["frequency [Hz]", "amplitude [m/s2]"]
     columns += [f"{kind}_{part} [m/N]" for kind in ("measured", "fitted") for part in ("re", "im")]
     columns += ["magnitude_error [%]", "phase_error [deg]"]

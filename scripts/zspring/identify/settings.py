@@ -80,8 +80,8 @@ class Free(Table):
 class Search(Table):
     """Differential evolution before the least squares."""
 
-    generations: int = Field(default=12, ge=0, description="at most; 0 for none")
-    population: int = Field(default=10, ge=1, description="candidates for each free parameter")
+    generations: int = Field(default=12, ge=0, le=100_000, description="at most; 0 for none")
+    population: int = Field(default=10, ge=1, le=10_000, description="candidates for each free parameter")
     points: int = Field(default=12, ge=1, description="at most for each amplitude")
     seed: int = Field(default=1, ge=0)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eig
+from scipy.linalg import LinAlgError, eig
 
+from ..errors import ZSpringError
 from ..receptance import HEAD, LinearModel
 
 NEGLIGIBLE = 1e-9  # of the largest: of an eigenvalue, or of a shape's entry, no more than rounding
@@ -57,7 +58,13 @@ def natural_frequencies(model: LinearModel, head_held: bool = False) -> np.ndarr
 
 
 def _finite_eig(A: np.ndarray, B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues and vectors of A x = s B x without the infinite ones, which B's null space makes."""
-    (numerator, denominator), vectors = eig(A, B, homogeneous_eigvals=True)
+    """Eigenvalues and vectors of A x = s B x without the infinite ones, which B's null space makes.
+
+    Raises ZSpringError where LAPACK finds none, as with parameters of 1e300.
+    """
+    try:
+        (numerator, denominator), vectors = eig(A, B, homogeneous_eigvals=True)
+    except LinAlgError as error:
+        raise ZSpringError(f"no modes with these parameters: {error}") from None
     finite = np.abs(denominator) > 1e-14 * np.abs(denominator).max()
     return numerator[finite] / denominator[finite], vectors[:, finite]

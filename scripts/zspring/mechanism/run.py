@@ -41,8 +41,9 @@ def run_mechanism(
     if suspension == "Linear":
         raise ZSpringError("suspension = Linear: has no linkage to draw")
     stroke = FrfSettings().stroke
+    omega = 2 * math.pi * frequency
     for acceleration in accelerations:
-        if acceleration > stroke * (2 * math.pi * frequency) ** 2 > 0:
+        if acceleration > stroke * omega * omega > 0:
             raise ZSpringError(f"{frequency:g} Hz at {acceleration:g} m/s2: needs more stroke than {1e3 * stroke:g} mm")
     table, figure, page = (folder / f"mechanism.{kind}" for kind in ("csv", suffix, "html"))
     listed = {name: value for name, value in used.items() if not name.startswith(("bench.", "drive"))}
