@@ -32,3 +32,10 @@ def synthetic_note(fmu: Fmu, parameters: Mapping[str, Value]) -> str:
     if text(fmu.variables["suspension"], parameters["suspension"]) == "Linear":
         return ""
     return "; Z-spring parameters synthetic" if fmu.variables.synthetic(parameters) else ""
+
+
+def model_note(fmu: Fmu, parameters: Mapping[str, Value]) -> str:
+    """What a title says of suspension, friction and internal step."""
+    suspension, friction = (text(fmu.variables[name], parameters[name]) for name in ("suspension", "friction"))
+    model = f"friction {friction}" if suspension == "ZSpring" else f"suspension {suspension}"
+    return f"{model}, step {1e3 * parameters['solver.step']:g} ms"

@@ -22,6 +22,7 @@ from .tables import LARGEST
 from .variables import Value
 
 MOST_NUMBERS = 100_000
+TOLD_ANYWAY = ("drive", "suspension", "friction", "solver.step")  # by titles
 
 
 class _Finite(click.ParamType):
@@ -146,6 +147,12 @@ class Pantograph:
     fmu_path: Path | None
     parameter_set: str | None
     assignments: Sequence[str]
+
+    @property
+    def named(self) -> str:
+        """For titles: the set, and what --set gives that they do not say anyway."""
+        others = [a for a in self.assignments if a.partition("=")[0].strip() not in TOLD_ANYWAY]
+        return ", ".join([f"pantograph {self.parameter_set or 'of the FMU'}", *others])
 
     @contextmanager
     def opened(

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from zspring.bench.compare import band_errors, compare_frf
 from zspring.bench.curves import Curve, Source
-from zspring.en50318.frf import band_errors, compare_frf
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
 from zspring.receptance import receptance

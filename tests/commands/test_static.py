@@ -12,12 +12,14 @@ import signal
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 
 from commands import PNG, head, table, zspring
-from zspring.bench.loops import measure_loop
+from zspring.bench.loops import POINTS, Loop, measure_loop
 from zspring.fmu import Fmu
 from zspring.interrupt import Interrupted
 from zspring.static import run as static_run
+from zspring.static.plot import LAW_STYLES, static_figure
 
 
 @pytest.fixture(scope="module")
@@ -103,6 +105,20 @@ def test_the_command_writes_its_files_and_says_where_friction_ends(tmp_path):
         secant = np.ptp(force) / np.ptp(compression)
         assert secant == pytest.approx(float(row["stiffness [N/m]"]), rel=0.01)
     assert (tmp_path / "out/static.png").read_bytes().startswith(PNG)
+
+
+def test_every_amplitude_asked_for_is_drawn():
+    """At every rate and with both laws, in a panel that names it."""
+    x, amplitudes = np.cos(np.linspace(0, 2 * np.pi, POINTS + 1)), (5e-5, 2e-3, 7e-3, 2e-2)
+    loops = [
+        Loop(law, rate, a, a * x, 1e4 * a * x, 0.0) for law in LAW_STYLES for rate in (1e-4, 1e-3) for a in amplitudes
+    ]
+    figure = static_figure(loops, {"zspring.k_locked": 9e3, "zspring.k_free": 5e3}, "title")
+    panels = {axes.get_title(): axes.lines for axes in figure.findobj(Axes)}
+    for a in amplitudes:
+        drawn = panels[f"{1e3 * a:g} mm"]
+        assert len(drawn) == 4 and all(max(line.get_xdata()) == pytest.approx(1e3 * a) for line in drawn)
+    assert set(panels) == {"equivalent stiffness", *(f"{1e3 * a:g} mm" for a in amplitudes)}
 
 
 @pytest.mark.parametrize(

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from zspring.bench.compare import LevelComparison, band_errors
 from zspring.bench.curves import Curve
 from zspring.en50318 import comparison, report, summary
 from zspring.en50318.edition import judge, packaged_edition, read_edition
 from zspring.en50318.files import BY_SPAN
-from zspring.en50318.frf import LevelComparison, band_errors
 from zspring.en50318.own_data import OwnData, agreement_chapter, series_chapter
 from zspring.en50318.page import BAD, GOOD, Cell, Table
 from zspring.en50318.workers import Finished

@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..bench.compare import compare_frf, write_comparison
 from ..bench.conditions import FILE_ORDER, STATED
 from ..bench.curves import Source
 from ..errors import ZSpringError, tell
@@ -19,11 +20,9 @@ from ..line.series import Series, read_series, require_pressing
 from ..line.stated import SAME_SPEED, agreed
 from ..line.statistics import Section, Statistics, statistics
 from ..parameter_sets import LINES, chosen_set
-from ..tables import write_table
 from ..variables import Value, with_unit
 from . import about, plot, report, summary
 from .edition import Case, Edition, Judgement, agreement, judge
-from .frf import LevelComparison, compare_frf
 from .page import Cell, Chapter, Picture, Table, keep_other_reports
 from .plan import section_of, slug
 from .run import REPORT, finish
@@ -195,7 +194,7 @@ def frf_chapter(
             raise Interrupted("interrupted: the frequency response is not complete, nothing is written")
     path = folder / "frf-comparison.csv"
     comparisons, used = comparison.levels, fmu.used_parameters(comparison.parameters)
-    _write_frf(path, fmu, source, comparisons)
+    write_comparison(path, fmu, source, comparisons)
     for remark in comparison.remarks:
         print(remark, file=sys.stderr)
     note = synthetic_note(fmu, used)
@@ -215,14 +214,3 @@ def frf_chapter(
         "Pantograph: measured and computed FRF",
         [text, *missing, *(f"{r}." for r in comparison.remarks), table, picture],
     ), [path]
-
-
-def _write_frf(path: Path, fmu: Fmu, source: Source, comparisons: Sequence[LevelComparison]) -> None:
-    columns = ["amplitude", "frequency [Hz]", "amplitude [m/s2]"]
-    columns += [f"{kind}_{part} [m/N]" for kind in ("measured", "computed") for part in ("re", "im")]
-    rows = [
-        [each.measured.label, float(f), float(a), m.real, m.imag, c.real, c.imag]
-        for each in comparisons
-        for f, a, m, c in zip(each.measured.frequency, each.measured.acceleration, each.measured.H, each.computed)
-    ]
-    write_table(path, {**fmu.identity, "measured": str(source.path)}, columns, rows)

@@ -9,13 +9,13 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
+from ..bench.compare import LevelComparison
 from ..bench.responses import phase_degrees
 from ..figures import legend_beside, new_figure
 from ..line.result import SLIPPING, LineResult
 from ..line.series import Series
 from ..line.statistics import FIGURES, Section, Statistics, low_pass
 from .edition import Judgement
-from .frf import LevelComparison
 
 COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:purple")
 STYLES = ("-", "-", ":", "--")

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 
+from ..bench.compare import LevelComparison
 from ..fmu import Fmu
 from ..line.mean_force import mean_force
 from ..line.statistics import FIGURES, Statistics
@@ -13,7 +14,6 @@ from ..parameter_sets import describe_set
 from ..text_tables import aligned
 from ..variables import text
 from .edition import Case, Judgement, sets_of
-from .frf import LevelComparison
 from .page import BAD, GOOD, WORDS, Cell, Table
 from .plan import Run
 from .summary import share

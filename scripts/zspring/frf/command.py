@@ -4,10 +4,21 @@ from __future__ import annotations
 
 import click
 
+from ..bench.curves import SENSES, Source
 from ..bench.measure import BENCH_PARAMETERS, BENCHES, FrfSettings
 from ..bench.responses import QUANTITIES
 from ..bench.steady import LOOK_PERIODS
-from ..options import POSITIVE, choice, format_option, jobs_option, numbers, option, output_option, pantograph_options
+from ..options import (
+    FILE,
+    POSITIVE,
+    choice,
+    format_option,
+    jobs_option,
+    numbers,
+    option,
+    output_option,
+    pantograph_options,
+)
 from ..records import claimed
 
 STANDARD = FrfSettings()
@@ -16,8 +27,8 @@ STANDARD = FrfSettings()
 @click.command()
 @numbers(
     "--amplitudes",
-    STANDARD.amplitudes,
-    "Peak accelerations of the imposed sine in m/s2, e.g. 0.25,4.  [default: 0.25,0.5,1,2,4,8]",
+    None,
+    "Peak accelerations of the imposed sine in m/s2, e.g. 0.25,4.  [default: 0.25,0.5,1,2,4,8, or those of --measured]",
 )
 @numbers(
     "--frequencies",
@@ -27,8 +38,8 @@ STANDARD = FrfSettings()
 @choice(
     "--direction",
     of=["up", "down", "both", "rest"],
-    default=STANDARD.direction,
-    help="Sweep the frequency up or down without stopping, both to compare, or begin each point in the static state.",
+    help="Sweep the frequency up or down without stopping, both to compare, or begin each point in the static state.  "
+    "[default: up, or as --measured says]",
 )
 @pantograph_options
 @choice(
@@ -74,10 +85,37 @@ STANDARD = FrfSettings()
 @click.option(
     "--error-estimate", is_flag=True, help="Measure at half the internal step, too, and estimate the error of H."
 )
+@option(
+    "--measured",
+    kind=FILE,
+    metavar="FILE",
+    help="A measured response (CSV or universal file, see `zspring identify`) to lay over the model's and compare.",
+)
+@choice(
+    "--measured-force",
+    of=SENSES,
+    default="specimen",
+    help="Its force positive along the displacement, or pressing the head down.",
+)
+@option("--measured-amplitude", kind=POSITIVE, metavar="A", help="Its peak acceleration in m/s2, if it does not tell.")
 @click.option("--no-extremes", is_flag=True, help="Measure these frequencies only: no search for extremes, no table.")
 @jobs_option("Sweeps at a time (amplitudes; single points from rest).")
 @format_option
-def frf(pantograph, quantity, output, error_estimate, no_extremes, jobs, suffix, **settings) -> None:
+def frf(
+    pantograph,
+    quantity,
+    output,
+    error_estimate,
+    measured,
+    measured_force,
+    measured_amplitude,
+    no_extremes,
+    jobs,
+    suffix,
+    amplitudes,
+    direction,
+    **settings,
+) -> None:
     """Measure the first-order FRF by stepped sine with controlled response.
 
     Without options: the standard figure. Writes frf.csv and frf.png.
@@ -91,10 +129,17 @@ def frf(pantograph, quantity, output, error_estimate, no_extremes, jobs, suffix,
     if settings["max_periods"] < settings["min_periods"]:
         text = "{max_periods}: must not be below --min-periods {min_periods}".format(**settings)
         raise click.BadParameter(text, param_hint="--max-periods")
-    from .run import default_folder, run_frf  # matplotlib is slow to load
+    from .overlay import amplitudes_of, stated
+    from .run import Wanted, default_folder, run_frf  # matplotlib is slow to load
 
+    source = Source(measured, measured_amplitude, measured_force) if measured else None
     with pantograph.opened(BENCH_PARAMETERS) as (fmu, parameters):
+        if source:
+            parameters, direction = stated(fmu, source, parameters, direction)
+            amplitudes = amplitudes or amplitudes_of(source)
+        settings |= {"amplitudes": amplitudes or STANDARD.amplitudes, "direction": direction or STANDARD.direction}
         frf_settings = FrfSettings(parameters=parameters, **settings)
         folder = output or default_folder(fmu, frf_settings)
         with claimed(folder):
-            run_frf(fmu, frf_settings, folder, quantity, suffix, jobs, error_estimate, not no_extremes)
+            wanted = Wanted(pantograph.named, quantity, suffix, jobs, error_estimate, not no_extremes, source)
+            run_frf(fmu, frf_settings, folder, wanted)

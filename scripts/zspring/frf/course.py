@@ -13,7 +13,7 @@ from ..bench.refine import AT_EXTREME, Extreme, Refinement, refine
 from ..fmu import Fmu
 from ..records import Record, fill
 from ..variables import Value
-from .files import frf_record, remaining
+from .files import frf_record, remaining, write_frf
 from .report import frf_head, richardson
 
 Key = tuple[float, float]  # amplitude in m/s2 and frequency in Hz
@@ -22,6 +22,7 @@ Key = tuple[float, float]  # amplitude in m/s2 and frequency in Hz
 class Course:
     """Measures in a folder, into records from which it goes on after an interruption.
 
+    path        of their file
     points      asked for, by amplitude and frequency, with those left out
     beside      other ones, around the extremes
     extremes    by amplitude in m/s2
@@ -31,6 +32,7 @@ class Course:
 
     def __init__(self, fmu: Fmu, settings: FrfSettings, folder: Path, name: str, quantity: str, jobs: int):
         self._fmu, self._folder, self._name, self._quantity, self._jobs = fmu, folder, name, quantity, jobs
+        self.path = folder / f"{name}.csv"
         self.settings, self.parameters = settings, all_parameters(fmu, settings)
         self.head = frf_head(fmu, settings, self.parameters, quantity)
         self.points: list[FrfPoint] = []
@@ -88,6 +90,14 @@ class Course:
         H = {place(p): p.H for p in points}
         errors = {place(p): richardson(p.H, H[place(p)]) for p in self.points if place(p) in H}
         self.errors = {key: error for key, error in errors.items() if math.isfinite(error)}
+
+    def write(self) -> list[Path]:
+        """The file of the points asked for, and that of the others if they were looked for."""
+        written = [write_frf(self.path, self.head, self.points, self._quantity, self.errors)]
+        if self.extremes:
+            refined = self._folder / f"{self._name}-refined.csv"
+            written.append(write_frf(refined, self.head, self.beside, self._quantity))
+        return written
 
     def forget(self) -> None:
         """The records, once all is written."""

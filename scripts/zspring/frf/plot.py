@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from ..bench.compare import LevelComparison
 from ..bench.measure import LEFT_OUT, NOT_SETTLED, REPEATS, FrfPoint, differences
 from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
 from ..figures import new_figure
@@ -23,12 +26,14 @@ BOUND_LABELS = {
 }
 
 
+NEAR = 0.1  # relative: amplitudes that far apart have one colour
 WAY_STYLES = {"up": "-", "down": "--", "rest": "-"}
 MARKS = {NOT_SETTLED: ("o", "not settled"), REPEATS: ("D", "repeats only after several periods")}
 
 
 def frf_figure(
     ways: Mapping[str, tuple[Sequence[FrfPoint], Sequence[FrfPoint]]],
+    levels: Sequence[LevelComparison],
     bounds: Mapping[str, LinearModel],
     quantity: str,
     stroke: float,
@@ -38,6 +43,7 @@ def frf_figure(
 
     ways        by direction: points asked for, and others around the extremes, which are drawn without markers; of two
                 the difference is drawn as well
+    levels      of a measured response: points in the colour of their amplitude, or black ones on the model's curve
     bounds      by name ("locked", "free", "linear")
     quantity    "receptance" or "stiffness"
     stroke      in m, beyond which points were left out
@@ -72,6 +78,9 @@ def frf_figure(
             height = np.full(missing.shape, 0.02 + 0.022 * number)
             magnitude.plot(missing, height, "x", color=color, markersize=4, transform=magnitude.get_xaxis_transform())
 
+    for level in levels:
+        _draw_measured(magnitude, phase, level, colors, quantity)
+
     handles = magnitude.get_legend_handles_labels()[0]
     if both:
         handles += [Line2D([], [], color="gray", ls=WAY_STYLES[way], label=f"sweep {way}") for way in ways]
@@ -96,6 +105,24 @@ def frf_figure(
     axes.set(xlabel="frequency  [Hz]", xlim=(fine[0], fine[-1]) if fine[0] < fine[-1] else None)
     axes.xaxis.set_major_locator(MaxNLocator(12))
     return figure
+
+
+def _draw_measured(
+    magnitude: Axes, phase: Axes, level: LevelComparison, colors: Mapping[float, np.ndarray], quantity: str
+) -> None:
+    """One level; at an amplitude that no curve has, also what the model has at its points."""
+    frequency, middle = level.measured.frequency, float(np.median(level.measured.acceleration))
+    near = [amplitude for amplitude in colors if abs(amplitude / middle - 1) < NEAR]
+    color = colors[min(near, key=lambda a: abs(a / middle - 1))] if near else "black"
+    style: dict[str, Any] = {"color": color, "linestyle": "none", "marker": "o", "markersize": 4, "fillstyle": "none"}
+    label = level.measured.label.replace("m/s2", "m/s²")
+    curves = [(level.measured.H, f"measured, {label}", style)]
+    if not near:
+        curves.append((level.computed, f"model, {label}", {"color": "black", "linewidth": 0.8}))
+    for H, name, style in curves:
+        value = as_quantity(H, quantity)
+        magnitude.semilogy(frequency, np.abs(value), label=name, zorder=4, **style)
+        phase.plot(frequency, phase_degrees(value, quantity), zorder=4, **style)
 
 
 def amplitude_colors(points: Sequence[FrfPoint]) -> dict[float, np.ndarray]:

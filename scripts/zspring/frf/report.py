@@ -10,10 +10,10 @@ import numpy as np
 from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, REPEATS, FrfPoint, FrfSettings, differences
 from ..bench.refine import JUMP, Extreme, exact_extremes
 from ..fmu import Fmu
-from ..heads import file_head, now, synthetic_note
+from ..heads import file_head, model_note, now, synthetic_note
 from ..receptance import LinearModel, linear_model
 from ..text_tables import aligned, with_error
-from ..variables import Value, text
+from ..variables import Value
 
 
 @dataclass(frozen=True)
@@ -45,14 +45,13 @@ def frf_head(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], q
     return file_head(fmu, parameters, own, but_not=BENCH_PARAMETERS)
 
 
-def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value]) -> str:
+def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], pantograph: str) -> str:
     """Title of the figure: what was measured and whether any number of the Z-spring is synthetic."""
-    suspension, friction = (text(fmu.variables[name], parameters[name]) for name in ("suspension", "friction"))
-    model = f"Z-spring, friction {friction}" if suspension == "ZSpring" else f"suspension {suspension}"
     course = {"rest": "each point from rest", "both": "sweeps up and down"}.get(
         settings.direction, f"sweep {settings.direction}"
     )
-    return f"Pantograph head, first-order FRF\n{model}, {course}{synthetic_note(fmu, parameters)}"
+    about = f"{model_note(fmu, parameters)}, {course}{synthetic_note(fmu, parameters)}"
+    return f"First-order FRF at the head, {pantograph}\n{about}"
 
 
 def linear_bounds(parameters: Mapping[str, Value], linear: bool) -> dict[str, LinearModel]:

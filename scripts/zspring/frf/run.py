@@ -3,95 +3,123 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..bench.compare import FrfComparison, compare_frf, write_comparison
+from ..bench.curves import Source
 from ..bench.measure import FAILED, FrfSettings, sweeps
 from ..errors import ZSpringError, tell
 from ..figures import save
 from ..fmu import Fmu
+from ..interrupt import Interrupted, stop_on_interrupt
 from ..parameter_sets import ACCURATE_STEP
 from ..records import keep_others
 from ..variables import text
 from . import report
 from .course import Course
-from .files import write_frf, write_resonances
+from .files import write_resonances
+from .overlay import distance_lines
 from .plot import frf_figure
 
 BOTH = "up", "down"
 
 
-def run_frf(
-    fmu: Fmu,
-    settings: FrfSettings,
-    folder: Path,
-    quantity: str,
-    suffix: str,
-    jobs: int,
-    error_estimate: bool,
-    find_extremes: bool,
-) -> None:
-    """Measure, going on where an interrupted run in the folder stopped, then write and print all results.
+@dataclass(frozen=True)
+class Wanted:
+    """What is wanted of a figure beside its points.
 
+    pantograph      in words, for the title
     quantity        "receptance" or "stiffness"
     suffix          of the figure, "png" or "svg"
     jobs            number of sweeps at a time
-    error_estimate  measure at half the internal step, too
-    find_extremes   measure further points around resonances and antiresonances
+    error_estimate  the points at half the internal step, too
+    extremes        further points around resonances and antiresonances
+    measured        a response to compare with
+    """
+
+    pantograph: str
+    quantity: str
+    suffix: str
+    jobs: int
+    error_estimate: bool
+    extremes: bool
+    measured: Source | None
+
+
+def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> None:
+    """Measure, going on where an interrupted run in the folder stopped, then write and print all results.
+
     Raises ZSpringError when there is no point to measure or points failed, Interrupted after Ctrl-C; finished
     points are kept.
     """
+    if not sweeps(settings):
+        raise ZSpringError(f"nothing to measure: all points need more stroke than {settings.stroke:g} m")
     ways = BOTH if settings.direction == "both" else (settings.direction,)
     courses = {}
     for way in ways:
-        one = replace(settings, direction=way)
-        if not sweeps(one):
-            raise ZSpringError(f"nothing to measure: all points need more stroke than {settings.stroke:g} m")
         name = "frf" if len(ways) == 1 else f"frf-{way}"
-        courses[name] = Course(fmu, one, folder, name, quantity, jobs)
-        keep_others(folder / f"{name}.csv", courses[name].head)
+        courses[way] = Course(fmu, replace(settings, direction=way), folder, name, wanted.quantity, wanted.jobs)
+        keep_others(courses[way].path, courses[way].head)
+    comparison = _compared(fmu, settings, wanted)
     lines = []
     for course in courses.values():
         lines.append(course.measure())
-        if find_extremes:
+        if wanted.extremes:
             lines.append(course.refine())
-        if error_estimate:
+        if wanted.error_estimate:
             course.estimate_errors()
 
-    (first, *_), sides = courses.values(), dict(zip(ways, courses.values()))
+    first = courses[ways[0]]
     linear = text(fmu.variables["suspension"], first.parameters["suspension"]) == "Linear"
     bounds = report.linear_bounds(first.parameters, linear)
-    written = []
-    for name, course in courses.items():
-        written.append(write_frf(folder / f"{name}.csv", course.head, course.points, quantity, course.errors))
-        if find_extremes:
-            written.append(write_frf(folder / f"{name}-refined.csv", course.head, course.beside, quantity))
-    if find_extremes:
-        found = {way: course.extremes for way, course in sides.items()}
-        rows = report.resonance_rows(found, bounds, (settings.frequencies[0], settings.frequencies[-1]))
-        written.append(
-            write_resonances(folder / "resonances.csv", {**first.head, "direction": settings.direction}, rows)
-        )
+    written = [path for course in courses.values() for path in course.write()]
+    if wanted.extremes:
+        found = {way: course.extremes for way, course in courses.items()}
+        rows = report.resonance_rows(found, bounds, _band(settings))
+        head = {**first.head, "direction": settings.direction}
+        written.append(write_resonances(folder / "resonances.csv", head, rows))
         lines[:0] = report.resonance_table(rows)
-    drawn = {way: (course.points, course.beside) for way, course in sides.items()}
-    title = report.title(fmu, settings, first.parameters)
-    written.append(folder / f"frf.{suffix}")
-    save(frf_figure(drawn, bounds, quantity, settings.stroke, title), written[-1])
+    if comparison and wanted.measured:
+        written.append(write_comparison(folder / "measured.csv", fmu, wanted.measured, comparison.levels))
+    drawn = {way: (course.points, course.beside) for way, course in courses.items()}
+    title = report.title(fmu, settings, first.parameters, wanted.pantograph)
+    levels = comparison.levels if comparison else ()
+    written.append(folder / f"frf.{wanted.suffix}")
+    save(frf_figure(drawn, levels, bounds, wanted.quantity, settings.stroke, title), written[-1])
     for course in courses.values():
         course.forget()
 
     every = [point for course in courses.values() for point in (*course.points, *course.beside)]
     lines.append(report.solver_line(every))
-    if len(sides) > 1:
-        lines += report.difference_lines(sides["up"].points, sides["down"].points, settings.tolerance)
+    if len(ways) > 1:
+        lines += report.difference_lines(courses["up"].points, courses["down"].points, settings.tolerance)
+    lines += distance_lines(levels)
     lines += [report.error_line(course.errors) for course in courses.values() if course.errors]
     print(*lines, sep="\n")
     print("written:", *written)
-    for name, course in courses.items():
-        tell(report.doubtful_lines(course.points), folder / f"{name}.csv")
+    if comparison:
+        tell(comparison.remarks, written[-1])
+    for course in courses.values():
+        tell(report.doubtful_lines(course.points), course.path)
     failed = sum(point.status.startswith(FAILED) for point in every)
     if failed:
         raise ZSpringError(f"{failed} of {len(every)} points could not be solved; the others are written")
+
+
+def _compared(fmu: Fmu, settings: FrfSettings, wanted: Wanted) -> FrfComparison | None:
+    """The model at the points of the measured response, in its order."""
+    if not wanted.measured:
+        return None
+    with stop_on_interrupt() as stop:
+        result = compare_frf(fmu, wanted.measured, settings.parameters, _band(settings), None, wanted.jobs, stop)
+    if stop.is_set():
+        raise Interrupted("interrupted before the first point")
+    return result
+
+
+def _band(settings: FrfSettings) -> tuple[float, float]:
+    return settings.frequencies[0], settings.frequencies[-1]
 
 
 def default_folder(fmu: Fmu, settings: FrfSettings) -> Path:

@@ -31,4 +31,5 @@ def static(pantograph, amplitudes, rates, output, suffix) -> None:
     with pantograph.opened(SET_HERE) as (fmu, parameters), claimed(output):
         from .run import run_static
 
-        run_static(fmu, parameters, [1e-3 * a for a in amplitudes], [1e-3 * rate for rate in rates], output, suffix)
+        lengths, speeds = [1e-3 * a for a in amplitudes], [1e-3 * rate for rate in rates]
+        run_static(fmu, parameters, lengths, speeds, output, suffix, pantograph.named)

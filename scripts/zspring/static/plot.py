@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import matplotlib
@@ -14,37 +15,36 @@ from ..variables import Value
 
 LAW_STYLES = {"Regularized": "-", "Coulomb": "--"}
 MARKERS = "osD^v<>"
+MOST_COLUMNS = 5
 
 
 def static_figure(loops: Sequence[Loop], parameters: Mapping[str, Value], title: str) -> Figure:
-    """Loops by amplitude, one loop by loading rate, stiffness over amplitude between both linear models.
+    """The loops, a panel for each amplitude, and the stiffness over the amplitude between both linear models.
 
     parameters  zspring.k_locked and zspring.k_free in N/m
     """
-    figure = new_figure(14, 4.8)
-    by_amplitude, by_rate, over_amplitude = figure.subplots(1, 3)
-    rates = sorted({loop.rate for loop in loops})
-    amplitudes = sorted({loop.amplitude for loop in loops})
-    # The loop that friction fills best shows most.
-    dissipation = {a: max(loop.area / a**2 for loop in loops if loop.amplitude == a) for a in amplitudes}
-    fullest = max(dissipation, key=dissipation.__getitem__)
-
-    shown = [a for a in amplitudes if fullest / 4 <= a <= 4 * fullest]
-    colors = dict(zip(shown, matplotlib.colormaps["plasma"](np.linspace(0, 0.85, len(shown)))))
-    for loop in loops:
-        if loop.rate == rates[-1] and loop.amplitude in colors:
-            label = f"{1e3 * loop.amplitude:g} mm" if loop.law == "Regularized" else None
-            _draw(by_amplitude, loop, colors[loop.amplitude], label)
-    by_amplitude.set_title(f"loops at {1e3 * rates[-1]:g} mm/s; dashed: Coulomb")
-    by_amplitude.legend(fontsize=8, title="amplitude", title_fontsize=8)
-
+    rates, amplitudes = (sorted({getattr(loop, key) for loop in loops}) for key in ("rate", "amplitude"))
     colors = dict(zip(rates, matplotlib.colormaps["viridis"](np.linspace(0, 0.85, len(rates)))))
-    for loop in loops:
-        if loop.amplitude == fullest:
-            _draw(by_rate, loop, colors[loop.rate], f"{loop.law}, {1e3 * loop.rate:g} mm/s")
-    by_rate.set_title(f"loop of {1e3 * fullest:g} mm by loading rate")
-    by_rate.legend(fontsize=8)
-
+    columns = min(math.ceil(math.sqrt(len(amplitudes))), MOST_COLUMNS)
+    rows = math.ceil(len(amplitudes) / columns)
+    figure = new_figure(2.3 * columns + 5.5, max(1.9 * rows, 4.0) + 0.8)
+    left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=[2.3 * columns, 5.5])[0]
+    panels = left.subplots(rows, columns, squeeze=False).ravel()
+    for axes, amplitude in zip(panels, amplitudes):
+        for loop in loops:
+            if loop.amplitude == amplitude:
+                axes.plot(
+                    1e3 * loop.compression, loop.force, LAW_STYLES[loop.law], color=colors[loop.rate], linewidth=1.1
+                )
+        axes.set_title(f"{1e3 * amplitude:g} mm", fontsize=9)
+        axes.ticklabel_format(useOffset=False, style="plain")
+        axes.tick_params(labelsize=7)
+        axes.grid(True, linewidth=0.4, alpha=0.5)
+    for axes in panels[len(amplitudes) :]:
+        axes.remove()
+    left.supxlabel("compression, frame minus head  [mm]", fontsize=10)
+    left.supylabel("force beyond the static one  [N]", fontsize=10)
+    over_amplitude = right.subplots()
     for law, style in LAW_STYLES.items():
         for (rate, color), marker in zip(colors.items(), MARKERS * len(rates)):
             curve = sorted((loop.amplitude, loop.stiffness) for loop in loops if (loop.law, loop.rate) == (law, rate))
@@ -79,13 +79,8 @@ def static_figure(loops: Sequence[Loop], parameters: Mapping[str, Value], title:
         ylim=(0, 1.1e-3 * parameters["zspring.k_locked"]),
     )
     over_amplitude.legend(fontsize=8, loc="lower left")
-    for axes in (by_amplitude, by_rate):
-        axes.set(xlabel="compression, frame minus head  [mm]", ylabel="force beyond the static one  [N]")
-    for axes in (by_amplitude, by_rate, over_amplitude):
-        axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
+    over_amplitude.grid(True, which="both", linewidth=0.4, alpha=0.5)
+    if len(amplitudes) > 1:
+        over_amplitude.set_xlim(1e3 * amplitudes[0], 1e3 * amplitudes[-1])
     figure.suptitle(title)
     return figure
-
-
-def _draw(axes, loop: Loop, color, label: str | None) -> None:
-    axes.plot(1e3 * loop.compression, loop.force, LAW_STYLES[loop.law], color=color, linewidth=1.2, label=label)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from ..bench.loops import CLAMP, Loop, measure_loop
+from ..bench.loops import CLAMP, POINTS, Loop, measure_loop
 from ..errors import ZSpringError
 from ..figures import save
 from ..fmu import Fmu
@@ -29,9 +29,11 @@ def run_static(
     rates: Sequence[float],
     folder: Path,
     suffix: str,
+    pantograph: str = "pantograph of the FMU",
 ) -> None:
     """Measure all loops, amplitudes in m and rates in m/s; write stiffness.csv, loops.csv and the figure.
 
+    pantograph  in words, for the title of the figure
     Raises ZSpringError for a suspension without friction, FmuError when the FMU refuses a parameter,
     Interrupted after Ctrl-C (the loops so far are kept).
     """
@@ -52,7 +54,7 @@ def run_static(
     if len(loops) < len(cases):
         raise Interrupted(f"interrupted after {len(loops)} of {len(cases)} loops, kept in {folder}")
     paths.append(folder / f"static.{suffix}")
-    title = f"Head suspension under slow loading{synthetic_note(fmu, used)}"
+    title = f"Head suspension under slow loading, {pantograph}{synthetic_note(fmu, used)}\n{POINTS} steps a loop"
     save(static_figure(loops, used, title), paths[-1])
     print(*_table(loops, used), sep="\n")
     print("written:", *paths)

@@ -1,4 +1,4 @@
-"""Validation of a pantograph's model by its frequency response: measured against computed, by level of amplitude."""
+"""A measured frequency response against that of the FMU on its bench, at the same points, by level of amplitude."""
 
 from __future__ import annotations
 
@@ -6,16 +6,18 @@ import itertools
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
-from ..bench.conditions import STATED, read_conditions
-from ..bench.curves import Curve, Source, in_band, sign_warning
-from ..bench.measured import read_curves
-from ..bench.model import BenchModel
 from ..errors import ZSpringError
 from ..fmu import Fmu
+from ..tables import write_table
 from ..variables import Value, with_unit
+from .conditions import STATED, read_conditions
+from .curves import Curve, Source, in_band, sign_warning
+from .measured import read_curves
+from .model import BenchModel
 
 
 @dataclass(frozen=True)
@@ -117,3 +119,15 @@ def band_errors(measured: Curve, computed: np.ndarray, edges: Sequence[float]) -
 def _rms_and_largest(values: np.ndarray) -> tuple[float, float]:
     """Root mean square, and the value farthest from 0."""
     return float(np.sqrt(np.mean(values**2))), float(values[np.argmax(np.abs(values))])
+
+
+def write_comparison(path: Path, fmu: Fmu, source: Source, levels: Sequence[LevelComparison]) -> Path:
+    """Both responses, point by point."""
+    columns = ["amplitude", "frequency [Hz]", "amplitude [m/s2]"]
+    columns += [f"{kind}_{part} [m/N]" for kind in ("measured", "computed") for part in ("re", "im")]
+    rows = [
+        [each.measured.label, float(f), float(a), m.real, m.imag, c.real, c.imag]
+        for each in levels
+        for f, a, m, c in zip(each.measured.frequency, each.measured.acceleration, each.measured.H, each.computed)
+    ]
+    return write_table(path, {**fmu.identity, "measured": str(source.path)}, columns, rows)
