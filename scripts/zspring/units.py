@@ -41,7 +41,9 @@ SYMBOLS = {
     "kHz": "kiloturn/second",
     "rpm": "turn/minute",
 }
-SPELLINGS = {"sec": "s", "HZ": "Hz", "hz": "Hz", "Hertz": "Hz", "RPM": "rpm"}  # of symbols
+SPELLINGS = {"sec": "s", "SEC": "s", "hz": "Hz", "hertz": "Hz", "Hertz": "Hz", "HERTZ": "Hz"}  # of symbols
+# Capitals as analysers write them; not MN, which could be mN.
+SPELLINGS |= {symbol.upper(): symbol for symbol in ("m", "mm", "um", "s", "rad", "g", "kg", "kN", "Hz", "kHz", "rpm")}
 SUPERSCRIPTS = str.maketrans("⁻¹²³⁴", "-1234")
 PRODUCTS = "*.·⋅ "
 NONE = ("", "1", "-")  # of a number without dimension

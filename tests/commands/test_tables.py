@@ -119,6 +119,7 @@ def test_a_missing_column_tells_which_there_are(tmp_path):
         *[("kHz", "Hz", 1e3), ("rpm", "Hz", 1 / 60), ("rad/s", "Hz", 1 / (2 * math.pi)), ("1/s", "Hz", 1.0)],
         *[("s^-1", "Hz", 1.0), ("1/min", "Hz", 1 / 60), ("Hz", "1/s", 1.0), ("kHz", "1/s", 1e3), ("rad/s", "1/s", 1.0)],
         *[("rpm", "rad/s", math.pi / 30), ("m/s**2", "m/s2", 1.0), ("RPM", "Hz", 1 / 60), ("rad/sec", "rad/s", 1.0)],
+        *[("MM/S2", "m/s2", 1e-3), ("G", "m/s2", 9.80665), ("KHZ", "Hz", 1e3), ("RAD/SEC", "Hz", 0.5 / math.pi)],
         *[("N·m", "N.m", 1.0), ("N m", "N.m", 1.0), ("kg", "kg", 1.0), ("1", "1", 1.0)],
     ],
 )
@@ -126,7 +127,7 @@ def test_units_are_multiples_by_definition(unit, target, factor):
     assert conversion(unit, target) == (target, pytest.approx(factor, rel=1e-14))
 
 
-@pytest.mark.parametrize("unit", ["lbf", "m//s", "m)", "(m", "N.", "m/N.s", "m/s*N", "2m", "mV", "kg", "s"])
+@pytest.mark.parametrize("unit", ["lbf", "m//s", "m)", "(m", "N.", "m/N.s", "m/s*N", "2m", "mV", "kg", "s", "MN"])
 def test_units_that_are_unknown_doubtful_or_of_another_kind_are_refused(unit):
     with pytest.raises(ZSpringError, match=r"must be one of N, kN, mN"):
         conversion(unit, "N")
