@@ -56,8 +56,8 @@ def series(path):
 
 def inputs(path):
     with Fmu() as fmu:
-        time, columns = read_inputs(path, fmu.variables)
-    return time, columns["wire_height"]
+        read = read_inputs(path, fmu.variables)
+    return float(read.start) + read.time, read.values["wire_height"]
 
 
 READERS = {

@@ -83,7 +83,9 @@ STANDARD = FrfSettings()
     help="Use the FMU's own bench, or command the head step by step from outside (slower).",
 )
 @click.option(
-    "--error-estimate", is_flag=True, help="Measure at half the internal step, too, and estimate the error of H."
+    "--error-estimate",
+    is_flag=True,
+    help="Measure at half the internal step, too, and estimate the error of H; more than 1 % is warned of.",
 )
 @option(
     "--measured",

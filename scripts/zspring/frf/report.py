@@ -15,6 +15,8 @@ from ..receptance import LinearModel, linear_model
 from ..text_tables import aligned, with_error
 from ..variables import Value
 
+ERROR_LIMIT = 0.01  # of |H|, by the estimate from half the step; more is warned of
+
 
 @dataclass(frozen=True)
 class Row:
@@ -133,6 +135,14 @@ def error_line(errors: Mapping[tuple[float, float], float]) -> str:
         f"error estimate of H from half the step: {100 * np.median(list(errors.values())):.2g} % median, "
         f"{100 * worst:.2g} % worst (at {frequency:g} Hz, {amplitude:g} m/s2)"
     )
+
+
+def error_warnings(errors: Mapping[tuple[float, float], float]) -> list[str]:
+    """One line where estimates exceed the limit, else none."""
+    beyond = sum(error > ERROR_LIMIT for error in errors.values())
+    limit = f"{100 * ERROR_LIMIT:g} %"
+    text = f"the error of H exceeds {limit} at {beyond} of {len(errors)} points: take a smaller --set solver.step"
+    return [text] if beyond else []
 
 
 def doubtful_lines(points: Iterable[FrfPoint]) -> list[str]:

@@ -101,7 +101,7 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
     if comparison:
         tell(comparison.remarks, written[-1])
     for course in courses.values():
-        tell(report.doubtful_lines(course.points), course.path)
+        tell([*report.error_warnings(course.errors), *report.doubtful_lines(course.points)], course.path)
     failed = sum(point.status.startswith(FAILED) for point in every)
     if failed:
         raise ZSpringError(f"{failed} of {len(every)} points could not be solved; the others are written")

@@ -40,17 +40,29 @@ from .inputs import read_inputs
     help="Stop time in s.  [default: where the inputs end; without inputs that of the FMU]",
 )
 @option("--step", metavar="H", help="Communication step in s.  [default: that of the FMU]")
+@click.option(
+    "--error-estimate",
+    is_flag=True,
+    help="Run at half the internal step, too, and estimate what it costs each output; more than 1 % of the output's "
+    "range (rms) is warned of. What the communication step and the inputs' rows cost is not in it.",
+)
 @output_option("results/simulation")
 @format_option
-def simulate(pantograph, drive, input_path, interpolation, stop_time, step, output, suffix) -> None:
+def simulate(pantograph, drive, input_path, interpolation, stop_time, step, error_estimate, output, suffix) -> None:
     """Simulate any drive with inputs from a CSV file.
 
-    Writes simulation.csv with all outputs, and a figure. After Ctrl-C the rows so far are kept.
+    Times may begin anywhere, as seconds since 1970 do. Writes simulation.csv with all outputs, a figure, and with
+    --error-estimate errors.csv. After Ctrl-C the rows so far are kept.
     """
-    from .run import simulate as run_simulation  # matplotlib is slow to load
+    from .run import plan  # matplotlib is slow to load
+    from .run import simulate as run_simulation
 
     if drive:
         pantograph = replace(pantograph, assignments=[*pantograph.assignments, f"drive={drive}"])
     with pantograph.opened() as (fmu, parameters), claimed(output):
         inputs = read_inputs(input_path, fmu.variables) if input_path else None
-        run_simulation(fmu, parameters, inputs, interpolation, stop_time, step, output, suffix)
+        experiment = fmu.description.defaultExperiment
+        default = float(experiment.stopTime), float(experiment.stepSize)
+        course = plan(inputs, interpolation, stop_time, step, default)
+        source = f", inputs of {input_path.name}" if input_path else ""
+        run_simulation(fmu, parameters, inputs, course, output, suffix, error_estimate, source)
