@@ -199,6 +199,7 @@ def test_differences_are_of_the_same_start_and_the_same_span():
         (((9.0, 29.0), (19.0, 19.0)), "lower from every start and over every span at 200 km/h"),
         (((9.0, 29.0), (21.0, 21.0)), "of either sign at 200 km/h"),
         (((10.0, 30.0), (20.0, 20.0)), "equal at 200 km/h"),
+        (((10.0, 30.0), (19.0, 20.0)), "lower or equal from every start at 200 km/h"),
     ],
 )
 def test_only_what_holds_from_every_start_is_said(others, said):

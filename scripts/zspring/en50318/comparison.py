@@ -161,7 +161,8 @@ def _word(starts: np.ndarray, spans: np.ndarray) -> str:
     if not np.any(spans):
         return "equal"
     for sign, word in (1, "higher"), (-1, "lower"):
-        if np.all(sign * starts > 0):
+        if np.all(sign * starts >= 0):
+            word += "" if np.all(starts) else " or equal"
             return f"{word} from every start" + (" and over every span" if np.all(sign * spans > 0) else "")
     return "of either sign"
 
@@ -176,5 +177,5 @@ def _figures(found: ByHead) -> dict[str, dict[float, dict[str, np.ndarray]]]:
     return {
         head: {speed: {name: whole(made, name) for name in BY_SPAN} for speed, made in by_speed.items()}
         for head, by_speed in found.items()
-        if len(next(iter(by_speed.values()))) > 1 or len(found) == 1
+        if len(next(iter(by_speed.values()))) > 1
     }
