@@ -16,7 +16,7 @@ from zspring.bench.input_bench import InputBench
 from zspring.bench.measure import FrfSettings, left_out, measure, settle, sweeps
 from zspring.bench.measured import Curve
 from zspring.bench.model import BenchModel
-from zspring.bench.resonances import LEAST_STEP, extremes
+from zspring.bench.refine import LEAST_STEP, turns
 from zspring.bench.responses import acceleration_of, as_quantity, phase_degrees, response_of
 from zspring.fmu import Fmu, StepDiscarded
 from zspring.study.evaluations import FrfQuantity
@@ -357,34 +357,11 @@ def test_a_bench_goes_on_from_a_saved_state_as_if_nothing_had_been(own_fmu, kind
 # Peaks
 
 
-def test_peaks_of_parabolas_are_found_exactly_between_the_points():
-    """log|H| of two parabolas with a valley between them, on an uneven grid; phases do not matter."""
-    f = np.array([1.0, 1.2, 1.5, 1.9, 2.1, 2.6, 3.0, 3.2, 3.6, 3.75, 4.0, 4.4])
-
-    def level(f):
-        left, valley, right = -5 - (f - 1.6) ** 2, -6.3 + 0.5 * (f - 2.7) ** 2, -5.5 - 2 * (f - 3.8) ** 2
-        return np.where(f < 2.05, left, np.where(f < 3.5, valley, right))
-
-    peaks, valleys = extremes(f, np.exp(level(f)) * np.exp(1j * f))
-    np.testing.assert_allclose(peaks, [(1.6, np.exp(-5)), (3.8, np.exp(-5.5))], rtol=1e-9)
-    np.testing.assert_allclose(valleys, [(2.7, np.exp(-6.3))], rtol=1e-9)
-    maxima, minima = extremes(f, np.exp(-level(f)))
-    np.testing.assert_allclose(minima, [(1.6, np.exp(5)), (3.8, np.exp(5.5))], rtol=1e-9)
-    np.testing.assert_allclose(maxima, [(2.7, np.exp(6.3))], rtol=1e-9)
-
-
 @pytest.mark.parametrize("height, count", [(0.9 * LEAST_STEP, 1), (1.1 * LEAST_STEP, 2)])
 def test_ripple_is_no_resonance(height, count):
     """A dent of that height on the flank beyond the peak, a level of log|H|."""
     level = np.array([0.0, 1.0, 2.0, 1.5, 1.0, 0.5, 0.5 + height, 0.1, -1.0])
-    peaks, valleys = extremes(np.arange(9.0), np.exp(level))
-    assert len(peaks) == count and len(valleys) == count - 1
-    assert peaks[0][0] == pytest.approx(2.1666667)  # of the parabola through 1, 2, 1.5
-
-
-def test_missing_points_make_no_extreme():
-    H = np.exp(np.array([0.0, 1.0, np.nan, 1.0, 0.0]))
-    assert extremes(np.arange(5.0), H) == ([], [])
+    assert turns(level) == [2, 5, 6][: 2 * count - 1]
 
 
 @pytest.mark.parametrize("band, index", [((0.5, 20.0), 1), ((8.0, 20.0), 2), ((3.0, 8.0), 1)])
@@ -395,14 +372,14 @@ def test_the_highest_resonance_is_looked_for_within_the_band(own_fmu, band, inde
     fine = np.arange(5.5, 14, 0.001)
     magnitude = np.abs([linear.receptance(f) for f in fine])
     tops = [i for i in range(1, len(fine) - 1) if magnitude[i - 1] < magnitude[i] > magnitude[i + 1]]
-    frequencies = tuple(np.arange(5.5, 14, 0.05).round(6).tolist())
-    quantity = FrfQuantity(FrfSettings((1.0,), frequencies, tolerance=1e-5), band)
+    frequencies = tuple(np.arange(5.5, 14, 0.25).tolist())
+    quantity = FrfQuantity(FrfSettings((1.0,), frequencies, tolerance=1e-4), band)
     assignments = ["suspension=Linear", "c1=30", "solver.step=2e-4"]
     with own_fmu.instances() as (instance,):
         found, problems = quantity.measure(instance, own_fmu.variables.parse_assignments(assignments))
     assert not problems and len(tops) == 2
-    assert found["resonance 1 m/s2 [Hz]"] == pytest.approx(fine[tops[index - 1]], rel=1e-3)
-    assert found["peak 1 m/s2 [m/N]"] == pytest.approx(magnitude[tops[index - 1]], rel=5e-3)
+    assert found["resonance 1 m/s2 [Hz]"] == pytest.approx(fine[tops[index - 1]], rel=2e-4)
+    assert found["peak 1 m/s2 [m/N]"] == pytest.approx(magnitude[tops[index - 1]], rel=1e-3)
 
 
 def test_a_band_without_a_peak_has_no_resonance(own_fmu):

@@ -13,8 +13,9 @@ from scipy.optimize import minimize_scalar
 from linear import PUBLISHED, LinearPantograph
 from zspring.bench.fmu_bench import FmuBench
 from zspring.bench.measure import FrfPoint, FrfSettings, measure, run_sweep, sweeps
-from zspring.bench.refine import JUMP, Extreme, Refinement, exact_extremes, refine, refining
+from zspring.bench.refine import JUMP, Extreme, Refinement, refine, refining
 from zspring.fmu import Fmu
+from zspring.frf.bounds import exact_extremes
 from zspring.receptance import linear_model
 
 GO_ON = threading.Event()

@@ -15,20 +15,16 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq
 
-from ..receptance import LinearModel
 from .measure import NOT_SETTLED, SETTLED, Bench, FrfPoint, FrfSettings, Kept, Sweep, run_sweep
-from .resonances import turns
 
+LEAST_STEP = 0.03  # of log |H| between neighbouring extremes; smaller ones are ripple, not resonances
 EXPECTED = 0.01  # of log H: distance of a point from what its neighbours let expect, in a resolved curve
 STEEP = 0.1  # the same, of the change of log |H| over the interval: no pair of extremes hides in a steep flank
 LEAST_WIDTH = 2e-4  # of an interval, relative to its frequency
 DROPS = 12e-3, 3e-3, 6e-3  # of log |H| beside an extreme, in the rounds of three points about it
 AT_EXTREME = 0.1  # of the tolerance of a point
 WANTED = 3e-4  # relative error of the frequency at which an extreme is known
-
-FINE = 4001  # frequencies between which the slope of a linear model has one zero at most
 
 Asking = Generator[tuple[float, bool], FrfPoint, "list[Extreme]"]
 JUMP = "jump"
@@ -58,18 +54,20 @@ class Extreme:
         )
 
 
-def refining(points: Sequence[FrfPoint]) -> Asking:
+def refining(points: Sequence[FrfPoint], highest: bool = False) -> Asking:
     """Asks for one frequency (Hz) after the other, and says whether it is at an extreme; returns them, ascending.
 
     points      of one amplitude, by ascending frequency; those without H divide the curve
+    highest     only the highest resonance that these points show
     It is to be sent the point measured at each frequency.
     """
     found, start = [], 0
     for end in range(len(points) + 1):
         if end == len(points) or not math.isfinite(abs(points[end].H)):
             curve = _Curve(points[start:end])
-            yield from curve.resolve()
-            found += yield from curve.extremes()
+            if not highest:
+                yield from curve.resolve()
+            found += yield from curve.extremes(highest)
             start = end + 1
     return found
 
@@ -80,10 +78,11 @@ class Refinement:
 
     sweep: Sequence[Kept]  # in the order in which they were measured
     beside: Sequence[Kept] = ()
+    highest: bool = False  # only the highest resonance
 
     @property
     def asking(self) -> Asking:
-        return refining(sorted((point for point, _ in self.sweep), key=lambda p: p.frequency))
+        return refining(sorted((point for point, _ in self.sweep), key=lambda p: p.frequency), self.highest)
 
     def extremes(self) -> list[Extreme]:
         """What the sweep and all points beside it say. Raises KeyError if points are missing."""
@@ -122,16 +121,17 @@ def refine(bench: Bench, task: Refinement, settings: FrfSettings, stop: threadin
             frequency, at_extreme = asking.send(done[frequency][0])
 
 
-def exact_extremes(model: LinearModel, band: tuple[float, float]) -> list[Extreme]:
-    """Those of a linear model within a band (Hz), from zeros of the slope of log |H|; its errors are 0."""
-    frequency = np.linspace(*band, FINE)
-    slope = [model.level_slope(f) for f in frequency]
-    zeros = [brentq(model.level_slope, *frequency[i : i + 2]) for i in np.flatnonzero(np.diff(np.sign(slope)))]
-    magnitude = np.abs(model.receptance(np.array([band[0], *zeros, band[1]])))
-    return [
-        Extreme(bool(magnitude[i] > magnitude[i - 1]), zeros[i - 1], 0.0, float(magnitude[i]), 0.0)
-        for i in turns(np.log(magnitude))
-    ]
+def turns(level: np.ndarray) -> list[int]:
+    """Where levels (n,) of log |H| are extreme, but for those that differ from a neighbouring one by < LEAST_STEP."""
+    slopes = np.sign(np.diff(level))
+    found = [i for i in range(1, len(level) - 1) if slopes[i - 1] * slopes[i] < 0]
+    while len(found) > 1:
+        steps = np.abs(np.diff(level[found]))
+        smallest = int(np.argmin(steps))
+        if steps[smallest] >= LEAST_STEP:
+            break
+        del found[smallest : smallest + 2]
+    return found
 
 
 class _Curve:
@@ -170,10 +170,14 @@ class _Curve:
         x = np.array([p.frequency for p in others]) - here.frequency
         return float(abs(np.linalg.solve(np.vander(x), np.log(np.array([p.H for p in others]) / here.H))[-1]))
 
-    def extremes(self) -> Asking:
-        """All of them, each with points of its own."""
+    def extremes(self, highest: bool) -> Asking:
+        """All of them, or the highest resonance, each with points of its own."""
         found, points = [], self._points
-        for i in turns(np.log([abs(p.H) for p in points])):
+        level = np.log([abs(p.H) for p in points])
+        chosen = turns(level)
+        if highest:
+            chosen = sorted((i for i in chosen if level[i] > level[i - 1]), key=lambda i: level[i])[-1:]
+        for i in chosen:
             found.append((yield from self._extreme(points[i - 1], points[i], points[i + 1])))
         return found
 

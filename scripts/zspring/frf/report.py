@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, REPEATS, FrfPoint, FrfSettings, differences
-from ..bench.refine import JUMP, Extreme, exact_extremes
+from ..bench.refine import JUMP, Extreme
 from ..fmu import Fmu
 from ..heads import file_head, model_note, now, synthetic_note
-from ..receptance import LinearModel, linear_model
+from ..receptance import LinearModel
 from ..text_tables import aligned, with_error
 from ..variables import Value
+from .bounds import exact_extremes
 
 ERROR_LIMIT = 0.01  # of |H|, by the estimate from half the step; more is warned of
 
@@ -54,11 +55,6 @@ def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], pant
     )
     about = f"{model_note(fmu, parameters)}, {course}{synthetic_note(fmu, parameters)}"
     return f"First-order FRF at the head, {pantograph}\n{about}"
-
-
-def linear_bounds(parameters: Mapping[str, Value], linear: bool) -> dict[str, LinearModel]:
-    """The linear models between which the FRF is: "locked" and "free", or "linear" alone."""
-    return {model: linear_model(parameters, model) for model in (["linear"] if linear else ["locked", "free"])}
 
 
 def resonance_rows(

@@ -17,6 +17,7 @@ from ..parameter_sets import ACCURATE_STEP
 from ..records import keep_others
 from ..variables import text
 from . import report
+from .bounds import linear_bounds
 from .course import Course
 from .files import write_resonances
 from .overlay import distance_lines
@@ -72,7 +73,7 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
 
     first = courses[ways[0]]
     linear = text(fmu.variables["suspension"], first.parameters["suspension"]) == "Linear"
-    bounds = report.linear_bounds(first.parameters, linear)
+    bounds = linear_bounds(first.parameters, linear)
     written = [path for course in courses.values() for path in course.write()]
     if wanted.extremes:
         found = {way: course.extremes for way, course in courses.items()}

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from ..bench.fmu_bench import FmuBench
 from ..bench.loops import measure_loop
-from ..bench.measure import FAILED, NOT_SETTLED, REPEATS, FrfSettings, run_sweep, sweeps
-from ..bench.resonances import extremes
+from ..bench.measure import FAILED, NOT_SETTLED, REPEATS, FrfSettings, Kept, run_sweep, sweeps
+from ..bench.refine import Refinement, refine
 from ..fmu import Instance
 from ..variables import Value, exact, exact_list, parse, text
 
@@ -52,10 +50,13 @@ class FrfQuantity:
     def measure(self, instance: Instance, parameters: Mapping[str, Value]) -> tuple[dict[str, float], list[str]]:
         """Values by column, and a line for each point that could not be solved."""
         bench = FmuBench(instance, parameters)
-        found, problems, unsettled = {}, [], 0
+        found: dict[tuple[float, float], complex] = {}
+        kept: dict[float, list[Kept]] = {}
+        problems, unsettled = [], 0
         for sweep in sweeps(self.settings):
-            for point, _ in run_sweep(bench, sweep, self.settings, threading.Event()):
+            for point, state in run_sweep(bench, sweep, self.settings, threading.Event()):
                 found[point.amplitude, point.frequency] = point.H
+                kept.setdefault(point.amplitude, []).append((point, state))
                 unsettled += point.status.startswith((NOT_SETTLED, REPEATS))
                 if point.status.startswith(FAILED):
                     problems.append(f"{point.amplitude:g} m/s2, {point.frequency:g} Hz: {point.status}")
@@ -63,16 +64,21 @@ class FrfQuantity:
         for (amplitude, frequency), H in found.items():
             values[column("H_re", amplitude, frequency)] = H.real
             values[column("H_im", amplitude, frequency)] = H.imag
-        for amplitude in {amplitude for amplitude, _ in found}:
-            values.update(self._resonance(amplitude, found))
+        for amplitude, points in kept.items():
+            frequency, peak = self._resonance(bench, points)
+            values[f"resonance {exact(amplitude)} m/s2 [Hz]"] = frequency
+            values[f"peak {exact(amplitude)} m/s2 [m/N]"] = peak
         return values, problems
 
-    def _resonance(self, amplitude: float, found: Mapping[tuple[float, float], complex]) -> dict[str, float]:
+    def _resonance(self, bench: FmuBench, points: Sequence[Kept]) -> tuple[float, float]:
+        """Frequency (Hz) and magnitude (m/N) of the highest resonance of one amplitude within the band, else NaN."""
         low, high = self.band
-        curve = sorted((f, H) for (a, f), H in found.items() if a == amplitude and low <= f <= high and not np.isnan(H))
-        maxima = extremes(*map(np.array, zip(*curve)))[0] if len(curve) > 2 else []
-        frequency, peak = max(maxima, key=lambda extreme: extreme[1], default=(math.nan, math.nan))
-        return {f"resonance {exact(amplitude)} m/s2 [Hz]": frequency, f"peak {exact(amplitude)} m/s2 [m/N]": peak}
+        inside = [(point, state) for point, state in points if low <= point.frequency <= high]
+        if not inside:
+            return math.nan, math.nan
+        beside = list(refine(bench, Refinement(inside, highest=True), self.settings, threading.Event()))
+        found = Refinement(inside, beside, highest=True).extremes()
+        return max(((e.frequency, e.magnitude) for e in found), key=lambda each: each[1], default=(math.nan, math.nan))
 
 
 @dataclass(frozen=True)
