@@ -116,7 +116,8 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
     apart from the reference pantograph.
 
     With --series, --line-test or --frf: the same report on your own data. A series is a CSV with the columns
-    contact force [N], time [s] and/or position [m], and perhaps wire height [m] and support uplift at X m [mm].
+    contact force [N], time [s] and/or position [m], and perhaps wire height [m] and support uplift at X m [mm]. Lines
+    before them may say "# span: 55 m", "# first support: 0 m", "# speed: 250 km/h".
 
     Writes report.html, which needs no other file, and raw CSV and PNG files beside it.
     """
