@@ -195,6 +195,10 @@ GAP = np.where(TIME >= 1.0, TIME + 0.5, TIME)
         ({"time [s]": TIME, "contact_force [N]": [*["100"] * 9, "999.90", *["100"] * 991]}, "line 12: .* no value"),
         ({"time [s]": TIME, "contact_force [N]": changed(FORCE, 9, -32768)}, "line 12: contact force = -32768 N: must"),
         (
+            {"time [s]": TIME, "contact_force [N]": np.where(TIME < 1, -32768, FORCE)},
+            "line 3: contact force = -32768 N",
+        ),
+        (
             {"time [s]": TIME, "contact_force [kN]": changed(FORCE, 9, 6)},
             "line 3: contact force = 100000 N: must be in",
         ),

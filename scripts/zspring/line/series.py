@@ -115,6 +115,7 @@ def read_series(path: Path, speed: float | None = None, pantograph: int = 1, tur
         raise ZSpringError(f"{path}: no column 'contact force [N]' (there are: {labels})")
     stated = Stated.in_head(path, table.head, pantograph)
     force = _values(table, "contact force", "N") * (-1 if turned else 1)
+    _within(table, "contact force", force, (-POSSIBLE[1], POSSIBLE[1]), "N")  # what is no force has no sign
     require_pressing(str(path), float(np.mean(force)))
     _within(table, "contact force", force, POSSIBLE, "N")
     position = table.numbers("position", "m") if "position" in table else None
