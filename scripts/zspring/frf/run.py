@@ -62,6 +62,9 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
         name = "frf" if len(ways) == 1 else f"frf-{way}"
         courses[way] = Course(fmu, replace(settings, direction=way), folder, name, wanted.quantity, wanted.jobs)
         keep_others(courses[way].path, courses[way].head)
+    first = courses[ways[0]]
+    head, table = {**first.head, "direction": settings.direction}, folder / "resonances.csv"
+    keep_others(table, head)
     comparison = _compared(fmu, settings, wanted)
     lines = []
     for course in courses.values():
@@ -71,15 +74,13 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
         if wanted.error_estimate:
             course.estimate_errors()
 
-    first = courses[ways[0]]
     linear = text(fmu.variables["suspension"], first.parameters["suspension"]) == "Linear"
     bounds = linear_bounds(first.parameters, linear)
     written = [path for course in courses.values() for path in course.write()]
     if wanted.extremes:
         found = {way: course.extremes for way, course in courses.items()}
         rows = report.resonance_rows(found, bounds, _band(settings))
-        head = {**first.head, "direction": settings.direction}
-        written.append(write_resonances(folder / "resonances.csv", head, rows))
+        written.append(write_resonances(table, head, rows))
         lines[:0] = report.resonance_table(rows)
     if comparison and wanted.measured:
         written.append(write_comparison(folder / "measured.csv", fmu, wanted.measured, comparison.levels))
