@@ -35,6 +35,23 @@ def test_frf_writes_the_receptance_that_the_fmu_has(pantograph, tmp_path):
     assert "resonances" in out and "points in" in out and "0.5" in out
 
 
+def test_both_directions_are_those_of_two_runs(tmp_path):
+    """Points, extremes and heads; the table says of which direction a row is."""
+    runs = {}
+    for direction in ("up", "down", "both"):
+        arguments = ["--amplitudes", "2", "--frequencies", "4:7:0.5", "--set", "solver.step=0.002"]
+        out, _ = zspring(tmp_path, "frf", *arguments, "--direction", direction, "--output", direction)
+        runs[direction] = table(tmp_path / direction / "resonances.csv")
+    assert "up and down differ by at most" in out
+    for direction in ("up", "down"):
+        for part in ("", "-refined"):
+            alone = receptances(tmp_path / direction / f"frf{part}.csv")
+            assert alone and alone == receptances(tmp_path / f"both/frf-{direction}{part}.csv")
+        assert f"# direction: {direction}" in head(tmp_path / f"both/frf-{direction}.csv")
+        rows = [row for row in runs[direction] if row["direction"]]
+        assert rows and rows == [row for row in runs["both"] if row["direction"] == direction]
+
+
 def test_the_head_of_the_file_has_every_parameter_with_its_unit(fmu, tmp_path):
     zspring(tmp_path, "frf", "--amplitudes", "1", "--frequencies", "5", "--set", "zspring.Mf=0.2", "--output", "out")
     text = "\n".join(head(tmp_path / "out/frf.csv"))
