@@ -1,5 +1,6 @@
 #include "communication_step.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace zspring {
@@ -34,6 +35,49 @@ void meet_variation(const Hht& hht, const Boundary& b0, MechanicalState& s) {
     s.contact_force = hht.reaction(b0, s.internal);
   }
   s.boundary = b0;
+}
+
+std::optional<Discard> CommunicationStep::run(SimulationState& state) const {
+  const auto nothing = [](const MechanicalState&, const MechanicalState&) {};
+  return gives_way() ? meet_wire(state) : run_along(position_input(p_.drive, held_.inputs), state, nothing);
+}
+
+// A wire that gives way is at free + compliance F at the end of the step, F the force there after all internal steps
+// with the wire on its straight way. F falls as the wire rises, so that
+//
+//   residual(height) = height - free - compliance F(height)
+//
+// grows at least as the height does: its root is no further than the residual. The secant method finds it, beginning
+// with the stiffness of the contact.
+std::optional<Discard> CommunicationStep::meet_wire(SimulationState& state) const {
+  const Wire& wire = held_.inputs.wire;
+  const double compliance = wire.compliance.value, force = state.mechanical.contact_force;
+  const double free = held_.inputs.wire_height.at(held_.length) + wire.compliance_previous.value * force;
+  const double allowed = p_.solver.tolerance * compliance * (p_.static_force + p_.m1 * p_.gravity);  // m
+  const auto nothing = [](const MechanicalState&, const MechanicalState&) {};
+  double slope = 1 + compliance * p_.contact.k, low = -HUGE_VAL, high = HUGE_VAL;
+  double last_height = 0, last_residual = 0;
+  Signal height;
+  height.value = free + compliance * force;
+  for (int i = 0; i < most_meetings; ++i) {
+    SimulationState end = state;
+    if (std::optional<Discard> discard = run_inputs(end, height, nothing)) return discard;
+    const double residual = height.value - free - compliance * end.mechanical.contact_force;
+    if (std::abs(residual) <= allowed) {
+      state = end;
+      return std::nullopt;
+    }
+    low = std::max(low, residual > 0 ? height.value - residual : height.value);
+    high = std::min(high, residual > 0 ? height.value : height.value - residual);
+    if (i > 0) slope = std::max(1.0, (residual - last_residual) / (height.value - last_height));
+    last_height = height.value;
+    last_residual = residual;
+    height.value -= residual / slope;
+    if (!(height.value > low && height.value < high)) height.value = 0.5 * (low + high);
+  }
+  return Discard{0,
+                 text("wire.compliance = %g m/N: no height of the wire fits the contact force, the residual is %.3g m",
+                      compliance, last_residual)};
 }
 
 const Signal& position_input(Drive drive, const Inputs& u) {

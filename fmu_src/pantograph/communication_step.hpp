@@ -41,14 +41,19 @@ class CommunicationStep {
  public:
   CommunicationStep(const Hht& hht, const Held& held) : hht_(hht), p_(hht.mechanics().parameters), held_(held) {}
 
-  // Leads `state` through it; on_step(from, to) sees each internal step that was made.
+  // Leads `state` through it.
+  std::optional<Discard> run(SimulationState& state) const;
+  // The same with what the position does in it, for a wire that gives way what it did; on_step(from, to) sees each
+  // internal step that was made.
   template <class OnStep>
-  std::optional<Discard> run(SimulationState& state, OnStep&& on_step) const {
-    return p_.drive == Drive::Bench ? run_bench(state, on_step) : run_inputs(state, on_step);
+  std::optional<Discard> run_along(const Signal& position, SimulationState& state, OnStep&& on_step) const {
+    return p_.drive == Drive::Bench ? run_bench(state, on_step) : run_inputs(state, position, on_step);
   }
+  bool gives_way() const { return p_.drive == Drive::Wire && held_.inputs.wire.gives_way(); }
 
  private:
   static constexpr int most_halvings = 10;  // to 1/1024 of the internal step
+  static constexpr int most_meetings = 60;  // of a wire that gives way with the head
 
   template <class OnStep>
   std::optional<Discard> run_bench(SimulationState& state, OnStep& on_step) const {
@@ -85,11 +90,13 @@ class CommunicationStep {
     return std::nullopt;
   }
 
+  std::optional<Discard> meet_wire(SimulationState& state) const;
+
   template <class OnStep>
-  std::optional<Discard> run_inputs(SimulationState& state, OnStep& on_step) const {
+  std::optional<Discard> run_inputs(SimulationState& state, const Signal& position, OnStep& on_step) const {
     const double H = held_.length;
     MechanicalState& s = state.mechanical;
-    const ImposedMotion motion(state.motion, position_input(p_.drive, held_.inputs), H);
+    const ImposedMotion motion(state.motion, position, H);
     const auto boundary = [&](double tau, Boundary& b) {
       set_forces(held_.inputs, tau, b);
       if (p_.drive != Drive::Force) motion.at(tau, b);

@@ -63,13 +63,22 @@ struct Uplift {
 };
 ZSPRING_MEMBERS(Uplift, head, upper_frame, lower_frame)
 
+// How the wire gives way to the contact force at the end of a communication step and at its begin; values alone count.
+struct Wire {
+  Signal compliance, compliance_previous;  // m/N, >= 0
+
+  bool gives_way() const { return compliance.value != 0 || compliance_previous.value != 0; }
+};
+ZSPRING_MEMBERS(Wire, compliance, compliance_previous)
+
 struct Inputs {
   Signal contact_force;      // N, Drive::Force
   Signal head_displacement;  // m, Drive::Displacement
-  Signal wire_height;        // m, Drive::Wire
+  Signal wire_height;        // m, Drive::Wire; of a wire that gives way its height without force
   Uplift uplift;
+  Wire wire;  // Drive::Wire
 };
-ZSPRING_MEMBERS(Inputs, contact_force, head_displacement, wire_height, uplift)
+ZSPRING_MEMBERS(Inputs, contact_force, head_displacement, wire_height, uplift, wire)
 
 // The calculated parameters; all 0 with Suspension::Linear.
 struct Calculated {

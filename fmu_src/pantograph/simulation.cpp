@@ -1,8 +1,21 @@
 #include "simulation.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace zspring {
+namespace {
+
+Text no_wire(const Inputs& u) {
+  const bool of_end = u.wire.compliance.value != 0;
+  return text("%s = %g m/N: must be 0 but in drive Wire", of_end ? "wire.compliance" : "wire.compliance_previous",
+              of_end ? u.wire.compliance.value : u.wire.compliance_previous.value);
+}
+
+}  // namespace
 
 Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : mechanics_(parameters), hht_(mechanics_) {
+  if (inputs.wire.gives_way() && parameters.drive != Drive::Wire) refuse("%s", no_wire(inputs).chars);
   SimulationState state;
   state.mechanical = at_rest(inputs);
   state.motion.position = state.mechanical.boundary.position;
@@ -12,8 +25,9 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : mec
 Boundary Simulation::initial_boundary(const Inputs& u) const {
   Boundary b;
   set_forces(u, 0, b);
-  // The wire begins where it is; the head begins in the static state, whatever its target.
-  if (mechanics_.parameters.drive == Drive::Wire) b.position = u.wire_height.value;
+  // The wire begins where it is, the head in the static state, whatever its target. Of a wire that gives way only the
+  // height at the end of the first step is told: it begins at 0, as in the static state.
+  if (mechanics_.parameters.drive == Drive::Wire && !u.wire.gives_way()) b.position = u.wire_height.value;
   return b;
 }
 
@@ -28,8 +42,9 @@ MechanicalState Simulation::at_rest(const Inputs& inputs) const {
 }
 
 std::optional<Discard> Simulation::run(const Held& held) {
-  const auto nothing = [](const MechanicalState&, const MechanicalState&) {};
-  std::optional<Discard> discard = CommunicationStep(hht_, held).run(state_, nothing);
+  if (held.inputs.wire.gives_way() && mechanics_.parameters.drive != Drive::Wire)
+    return Discard{0, no_wire(held.inputs)};
+  std::optional<Discard> discard = CommunicationStep(hht_, held).run(state_);
   // The accelerations of HHT are its own; no output shows them.
   const MechanicalState& s = state_.mechanical;
   if (!discard && !(s.a.allFinite() && s.a_slope.allFinite())) discard = Discard{held.length, text("%s", overflow)};
@@ -56,6 +71,9 @@ std::optional<Text> Simulation::describe_step() const {
 std::optional<Text> Simulation::describe_imbalance() const {
   const Parameters& p = mechanics_.parameters;
   const Inputs& u = held_.inputs;
+  // Of a wire that gives way its height under static_force, at the end of the first step: about 0.
+  double wire = u.wire_height.value + (u.wire.compliance.value + u.wire.compliance_previous.value) * p.static_force;
+  if (u.wire.gives_way() && std::abs(wire) < 1e-3) wire = 0;
   const struct {
     const char *name, *unit;
     bool acts;
@@ -63,7 +81,8 @@ std::optional<Text> Simulation::describe_imbalance() const {
   } inputs[] = {
       {"contact_force", "N", p.drive == Drive::Force, u.contact_force.value, p.static_force},
       {"head_displacement", "m", p.drive == Drive::Displacement, u.head_displacement.value, 0},
-      {"wire_height", "m", p.drive == Drive::Wire, u.wire_height.value, 0},
+      {u.wire.gives_way() ? "wire_height + (wire.compliance + wire.compliance_previous) static_force" : "wire_height",
+       "m", p.drive == Drive::Wire, wire, 0},
       {"uplift.head", "N", !hht_.head_imposed(), u.uplift.head.value, 0},
       {"uplift.upper_frame", "N", true, u.uplift.upper_frame.value, 0},
       {"uplift.lower_frame", "N", true, u.uplift.lower_frame.value, 0},

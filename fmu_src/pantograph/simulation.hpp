@@ -39,6 +39,9 @@ class Simulation final : public Model<Simulation, Inputs, SimulationState, Held>
   Outputs change(const MechanicalState& d) const;  // of the outputs, with that of the state
   bool is_possible(const SimulationState& s) const override;
   MechanicalState at_rest(const Inputs& inputs) const;
+  Signal position_followed() const;
+  Outputs initial_change(const Inputs& direction) const;
+  MechanicalState state_change(const Inputs& direction, const Signal& followed, double position) const;
   Boundary initial_boundary(const Inputs& inputs) const;
 
   Mechanics mechanics_;
