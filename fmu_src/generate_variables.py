@@ -16,7 +16,8 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import NoReturn
 
-OTHER_MEMBER = {"solver.alpha": "solver.hht_alpha"}  # in the models alpha is the angle of a rod
+# In the models alpha is the angle of a rod; a member has no members of its own.
+OTHER_MEMBER = {"solver.alpha": "solver.hht_alpha", "exchange.step": "exchange_step"}
 DECLARED = "initialDependencies"
 
 

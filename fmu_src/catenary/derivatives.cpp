@@ -7,7 +7,7 @@
 namespace zspring::catenary {
 
 Outputs Simulation::output_rates() {
-  const LineState& s = state_;
+  const LineState& s = state_.line;
   LineState d;
   d.u = s.v;
   d.v = s.a;
@@ -16,7 +16,7 @@ Outputs Simulation::output_rates() {
   d.dissipated = s.v.dot(s.damping);
   d.work = loads.dot(s.v);
   d.elastic = s.v.dot(s.internal) - d.dissipated + d.work;
-  const CommunicationStep step(line_, before_.passage, held_);
+  const CommunicationStep step(line_, before_.line.passage, held_);
   for (int i = 0; i < pantographs; ++i) {
     d.passage[i].position = s.passage[i].speed;
     if (held_.length > 0) d.passage[i].speed = step.speed_rate(i);
@@ -25,20 +25,23 @@ Outputs Simulation::output_rates() {
 }
 
 Outputs Simulation::outputs_change(const Inputs& direction) {
+  if (line_.p.exchange == Exchange::Parallel)
+    refuse("exchange = Parallel: has no directional derivatives, as its force inputs belong to the begin of a step");
   if (ended_with_leftover()) return {};
   const double length = held_.length;
   if (length == 0) {
     Passage changed[pantographs];
-    Loads dloads = loads_at(line_.mesh, state_.passage);
+    Loads dloads = loads_at(line_.mesh, state_.line.passage);
     for (int i = 0; i < pantographs; ++i) {
       changed[i] = initial_passage(line_.p, i, direction.pantograph[i]);
       if (line_.p.travel == Travel::Speed) changed[i].position = 0;  // a parameter
       const Place& place = dloads.on[i].place;
-      dloads.on[i].value = changed[i].force * place.value + state_.passage[i].force * changed[i].position * place.slope;
+      dloads.on[i].value =
+          changed[i].force * place.value + state_.line.passage[i].force * changed[i].position * place.slope;
     }
-    LineState d = hht_.at_rest_variation(dloads, state_.slack);
+    LineState d = hht_.at_rest_variation(dloads, state_.line.slack);
     std::copy_n(changed, pantographs, d.passage);
-    d.elastic = loads_at(line_.mesh, state_.passage).dot(d.u);
+    d.elastic = loads_at(line_.mesh, state_.line.passage).dot(d.u);
     return change(d);
   }
   // Only values vary; whether they are targets does not.
@@ -48,30 +51,28 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
       (changed.inputs.pantograph[i].*signal).has_derivatives = (held_.inputs.pantograph[i].*signal).has_derivatives;
   }
   const Passage nothing[pantographs] = {};
-  const CommunicationStep step(line_, before_.passage, held_), change_of(line_, nothing, changed);
+  const CommunicationStep step(line_, before_.line.passage, held_), change_of(line_, nothing, changed);
   const double n = static_cast<double>(step.internal_steps());
   const StepFactors& factors = hht_.factors(length / n);
 
-  LineState d;
-  d.u = d.v = d.a = d.internal = VectorXd::Zero(line_.mesh.dofs());
-  d.slack = VectorXd::Zero(state_.slack.size());
+  LineState d = LineState::at_rest(line_);
   Loads l0 = step.loads(0), dl0 = step.loads_change(change_of, 0);
   Loads none = dl0;
   for (PointLoad& l : none.on) l.value.setZero();
   hht_.jump(none, dl0, d);
   LineState now, next;  // the steps before the last are done again
   if (n > 1) {
-    now = before_;
-    hht_.jump(loads_at(line_.mesh, before_.passage), l0, now);
+    now = before_.line;
+    hht_.jump(loads_at(line_.mesh, before_.line.passage), l0, now);
   }
-  const LineState& from = n > 1 ? now : before_;
+  const LineState& from = n > 1 ? now : before_.line;
   for (Count k = 1; k <= step.internal_steps(); ++k) {
     const Loads l1 = step.loads(k / n * length), dl1 = step.loads_change(change_of, k / n * length);
     if (k < n) {
       next = now;
       if (!hht_.step(factors, l0, l1, next)) break;  // not reached: it was solved before
     }
-    const LineState& to = k < n ? next : state_;
+    const LineState& to = k < n ? next : state_.line;
     const VectorXd old_dv = d.v;
     d.work -= 0.5 * (dl0.dot(from.u) + dl1.dot(from.u) + l0.dot(d.u) + l1.dot(d.u));
     hht_.step_variation(factors, dl1, to, d);

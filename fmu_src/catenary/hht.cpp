@@ -72,9 +72,7 @@ BlockCholesky Hht::static_factor() const {
 }
 
 LineState Hht::at_rest_if_taut(const BlockCholesky& factor, const Loads& loads) const {
-  LineState s;
-  s.u = s.v = s.a = s.a_slope = s.internal = s.damping = VectorXd::Zero(line_.mesh.dofs());
-  s.slack = VectorXd::Zero(trial_.size());
+  LineState s = LineState::at_rest(line_);
   loads.add_to(s.u, 1);
   factor.solve(s.u);
   return s;

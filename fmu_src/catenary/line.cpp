@@ -15,6 +15,18 @@ Line::Line(const Parameters& parameters)
   }
 }
 
+LineState LineState::at_rest(const Line& line) {
+  LineState s;
+  s.u = s.v = s.a = s.a_slope = s.internal = s.damping = VectorXd::Zero(line.mesh.dofs());
+  s.slack = VectorXd::Zero(line.shape.tension.size());
+  return s;
+}
+
+void LineState::set_zero() {
+  for (VectorXd* x : {&u, &v, &a, &a_slope, &internal, &damping, &slack}) x->setZero();
+  h = kinetic = elastic = dissipated = work = 0;
+}
+
 void Line::add_springs(const VectorXd& u, VectorXd& internal) const {
   for (const Spring& s : matrices.supports) internal[s.dof] += s.stiffness * u[s.dof];
   for (int j = 0; j < static_cast<int>(mesh.droppers.size()); ++j)

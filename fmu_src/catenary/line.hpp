@@ -65,6 +65,9 @@ struct LineState {
   double kinetic = 0, elastic = 0, dissipated = 0, work = 0;
   Passage passage[pantographs];
   Statistics statistics;
+
+  static LineState at_rest(const Line& line);  // unloaded; also a variation of nothing
+  void set_zero();                             // keeps the sizes
 };
 ZSPRING_MEMBERS(LineState, u, v, a, a_slope, internal, damping, slack, h, kinetic, elastic, dissipated, work, passage,
                 statistics)

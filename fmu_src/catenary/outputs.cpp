@@ -5,7 +5,8 @@ namespace {
 
 // What the definitions are written with.
 struct View {
-  View(const Line& overhead, const LineState& state) : line(overhead), s(state) {
+  View(const Line& overhead, const SimulationState& state, const double (&zero)[pantographs])
+      : line(overhead), s(state.line), map(state.map), datum(zero) {
     for (int i = 0; i < pantographs; ++i) contact[i] = line.mesh.at(s.passage[i].position);
     for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point.position[i]);
     double least = HUGE_VAL, most = -HUGE_VAL;
@@ -27,6 +28,8 @@ struct View {
 
   const Line& line;
   const LineState& s;
+  const AffineMap (&map)[pantographs];
+  const double (&datum)[pantographs];              // m, of the heights under the pantographs
   Place contact[pantographs], point[most_points];  // under the pantographs; watched
   Count slack = 0;                                 // droppers
   int weakest = 0, strongest = 0;                  // droppers
@@ -68,7 +71,8 @@ namespace zspring {
 using namespace catenary;
 
 LINEAR(pantograph_dot_x, passage[i].position)
-OUTPUT(pantograph_dot_wire_height, height(x, x.contact[i]), height_change(x, x.contact[i], d, d.passage[i]))
+OUTPUT(pantograph_dot_wire_height, height(x, x.contact[i]) - x.datum[i],
+       height_change(x, x.contact[i], d, d.passage[i]))
 OUTPUT(pantograph_dot_wire_velocity, velocity(x, x.contact[i], x.s.passage[i].speed),
        velocity_change(x, x.contact[i], x.s.passage[i].speed, d, d.passage[i]))
 OUTPUT(pantograph_dot_uplift, uplift(x, x.contact[i]), uplift_change(x, x.contact[i], d, d.passage[i]))
@@ -86,12 +90,15 @@ LINEAR(energy_dot_work, work)
 DISCRETE(solver_dot_steps, x.s.statistics.steps)
 DISCRETE(solver_dot_iterations, x.s.statistics.iterations)
 DISCRETE(solver_dot_iterations_max, x.s.statistics.iterations_max)
+DISCRETE(pantograph_dot_free_height, x.map[i].free - x.datum[i])
+DISCRETE(pantograph_dot_compliance, x.map[i].compliance)
+DISCRETE(pantograph_dot_compliance_previous, x.map[i].previous)
 
 }  // namespace zspring
 
 namespace zspring::catenary {
 
-Outputs Simulation::present_outputs() const { return output_values(View(line_, state_)); }
-Outputs Simulation::change(const LineState& d) const { return output_changes(View(line_, state_), d); }
+Outputs Simulation::present_outputs() const { return output_values(View(line_, state_, datum_)); }
+Outputs Simulation::change(const LineState& d) const { return output_changes(View(line_, state_, datum_), d); }
 
 }  // namespace zspring::catenary

@@ -13,6 +13,8 @@ constexpr int most_points = 8;
 constexpr int pantographs = 2;
 
 enum class Travel { Speed = 1, Position };
+// What a force input belongs to, and so what the next one is unknown for; affine_map.hpp.
+enum class Exchange { Target = 1, Sequential, Parallel };
 
 struct WireParameters {
   double mass;     // kg/m, > 0
@@ -54,7 +56,8 @@ struct Parameters {
   double gravity;  // m/s2
   Travel travel;
   struct {
-    double start;  // m, Travel::Speed
+    double start;         // m, Travel::Speed
+    double static_force;  // N, under which its heights are 0 at the start; 0: they are over the line's datum
   } pantograph[pantographs];
   struct {
     double position[most_points];  // m
@@ -66,6 +69,8 @@ struct Parameters {
     double step;       // s, largest internal step
     double hht_alpha;  // [-1/3, 0]
   } solver;
+  Exchange exchange;
+  double exchange_step;  // s, the first communication step
 };
 
 // Each reaches its value at the end of the communication step, in a straight line from the last one.

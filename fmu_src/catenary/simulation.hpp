@@ -1,13 +1,22 @@
 // A simulation: the line from its equilibrium under the first contact forces, communication step by step.
 #pragma once
 
+#include "affine_map.hpp"
 #include "common/model.hpp"
-#include "communication_step.hpp"
-#include "hht.hpp"
 
 namespace zspring::catenary {
 
-class Simulation final : public Model<Simulation, Inputs, LineState, Held> {
+struct SimulationState {
+  LineState line;  // Exchange::Parallel: under forces that were guessed in the last step
+  // Exchange::Parallel: at its begin, where they were known, and that step; of length 0 before the first.
+  LineState known;
+  Held guessed;
+  AffineMap map[pantographs];  // of the next step
+  double foreseen = 0;         // s, its length
+};
+ZSPRING_MEMBERS(SimulationState, line, known, guessed, map, foreseen)
+
+class Simulation final : public Model<Simulation, Inputs, SimulationState, Held> {
  public:
   Simulation(const Parameters& parameters, const Inputs& inputs);
 
@@ -16,6 +25,7 @@ class Simulation final : public Model<Simulation, Inputs, LineState, Held> {
   Outputs outputs_change(const Inputs& direction) override;
 
   Text describe_run() const override;
+  std::optional<Text> describe_doubt() const override;
 
   const Calculated& calculated() const { return calculated_; }
 
@@ -28,12 +38,16 @@ class Simulation final : public Model<Simulation, Inputs, LineState, Held> {
   // Discarded where a pantograph that presses leaves the line, or the slack droppers could not be found.
   std::optional<Discard> run(const Held& held) override;
   std::optional<Discard> leaves_line(const CommunicationStep& step) const;
+  [[nodiscard]] bool correct_guess(const Held& held);
+  LineState at_rest(const Passage passage[pantographs]);
   Outputs present_outputs() const override;
-  Outputs change(const LineState& d) const;  // of the outputs, with that of the state
-  bool is_possible(const LineState& s) const override;
+  Outputs change(const LineState& d) const;  // of the outputs, with that of the line
+  bool is_possible(const SimulationState& s) const override;
 
   Line line_;
   Hht hht_;
+  Foresight foresight_;
+  double datum_[pantographs] = {};  // m, of the heights under the pantographs
   Calculated calculated_;
 };
 

@@ -66,6 +66,8 @@ class Model {
   virtual std::optional<Text> describe_imbalance() const { return std::nullopt; }
   virtual Text describe_run() const = 0;
   virtual std::optional<Text> describe_step() const { return std::nullopt; }
+  // What made the last step less accurate than it should be; said once.
+  virtual std::optional<Text> describe_doubt() const { return std::nullopt; }
 
   // All of the state but the parameters.
   void write(Writer& writer) { visit_all(writer); }

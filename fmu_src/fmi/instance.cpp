@@ -48,7 +48,7 @@ void Instance::reset() {
     if (!variables[i].is_calculated()) set(i, variables[i].start);
   stop_ = never;
   time_ = 0;
-  stepped_ = false;
+  stepped_ = doubted_ = false;
   forget_discard();
 }
 
@@ -178,6 +178,11 @@ fmi2Status Instance::step(double from, double length) {
   forget_discard();
   phase = StepComplete;
   time_ = to;
+  if (!doubted_ && log.enabled(Category::logStatusWarning))
+    if (const std::optional<Text> doubt = s.describe_doubt()) {
+      doubted_ = true;
+      log.write(fmi2OK, Category::logStatusWarning, text("t = %.10g s: %s", time_, doubt->chars));
+    }
   if (log.enabled(Category::logSolver))
     if (const std::optional<Text> step = s.describe_step())
       log.write(fmi2OK, Category::logSolver, text("t = %.10g s: %s", time_, step->chars));

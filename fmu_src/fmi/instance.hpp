@@ -69,6 +69,7 @@ class Instance {
   double stop_;  // s
   double time_;
   bool stepped_;
+  bool doubted_;  // and said so
   bool wants_to_end_;
   double discarded_length_;               // s, of the last step if that was discarded; else 0
   std::optional<Simulation> simulation_;  // refers to parameters_

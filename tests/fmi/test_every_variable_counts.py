@@ -34,7 +34,8 @@ CHANGED = {
     "k3": 100.0,
 }
 UNITS = {
-    r".*\.(z|x|uplift|wire_height|height|length)|support\.uplift": "m",
+    r".*\.(z|x|uplift|wire_height|free_height|height|length)|support\.uplift": "m",
+    r".*\.compliance(_previous)?": "m/N",
     r".*(\.v|velocity)": "m/s",
     r".*\.a": "m/s2",
     r".*force(_min|_max)?": "N",

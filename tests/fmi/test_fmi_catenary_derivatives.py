@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Slave
 
-from harness import Fmu, Instance, differences
+from harness import Instance, differences
 
 LINE = {"line.spans": 3, "damping.mass": 0.02, "damping.stiffness": 1e-3, "steady_arm.mass": 0.5}
 FORCES = {"pantograph[1].force": 250.0, "pantograph[2].force": 150.0}
@@ -16,10 +16,6 @@ TRAVELS = {
 }
 # Size of the difference by the end of the input's name.
 DELTAS = {"force": 1e-2, "speed": 1e-3, "position": 1e-5}
-
-
-def real_outputs(fmu: Fmu) -> list[str]:
-    return [name for name in fmu.names("output") if fmu.variables[name].type == "Real"]
 
 
 def inputs(travel: str) -> list[str]:
@@ -59,7 +55,7 @@ def compare(found: np.ndarray, expected: np.ndarray, values: np.ndarray, delta: 
 @pytest.mark.parametrize("size", [0.001, 0.0005, 0.013])
 @pytest.mark.parametrize("travel", TRAVELS)
 def test_directional_derivatives_of_a_step_are_its_differences(catenary, fmu_catenary, travel, size, rates):
-    p, outputs = in_motion(catenary, travel), real_outputs(fmu_catenary)
+    p, outputs = in_motion(catenary, travel), fmu_catenary.continuous_outputs()
     if rates:
         p.set_derivatives("pantograph[1].force", 3000.0, 1e5)
         p.set_derivatives(inputs(travel)[1], 60.0 if travel == "Position" else 5.0)
@@ -80,7 +76,7 @@ def test_beside_the_anchors_derivatives_are_differences_too(catenary, fmu_catena
     p.set({"travel": travel, f"pantograph[1].{kind}": first, f"pantograph[2].{kind}": second, **FORCES})
     p.initialize()
     speeds = {first: 3.0, second: -4.0}
-    outputs, size, time = real_outputs(fmu_catenary), 1e-3, 0.0
+    outputs, size, time = fmu_catenary.continuous_outputs(), 1e-3, 0.0
     for _ in range(20):
         time += size
         for i, begin in ((1, first), (2, second)):
@@ -95,7 +91,7 @@ def test_beside_the_anchors_derivatives_are_differences_too(catenary, fmu_catena
 
 @pytest.mark.parametrize("travel", TRAVELS)
 def test_derivatives_before_the_first_step_are_those_of_the_equilibrium(catenary, fmu_catenary, travel):
-    p, outputs = catenary(LINE | TRAVELS[travel] | FORCES, initialize=False), real_outputs(fmu_catenary)
+    p, outputs = catenary(LINE | TRAVELS[travel] | FORCES, initialize=False), fmu_catenary.continuous_outputs()
     p.slave.setupExperiment()
     p.slave.enterInitializationMode()
     values = p.reals(outputs)
@@ -111,7 +107,7 @@ def test_derivatives_before_the_first_step_are_those_of_the_equilibrium(catenary
 def test_inputs_of_the_other_travel_have_no_influence(catenary, fmu_catenary):
     for travel, other in (("Speed", "pantograph[1].position"), ("Position", "pantograph[1].speed")):
         p = in_motion(catenary, travel)
-        assert not directional(p.slave, p, real_outputs(fmu_catenary), other).any()
+        assert not directional(p.slave, p, fmu_catenary.continuous_outputs(), other).any()
 
 
 def test_directional_derivatives_are_linear_in_the_direction(catenary):
@@ -128,7 +124,7 @@ def test_directional_derivatives_are_linear_in_the_direction(catenary):
 @pytest.mark.parametrize("travel", TRAVELS)
 def test_output_derivatives_are_the_slopes_of_the_outputs(catenary, fmu_catenary, travel):
     """Against central differences of 400 finely sampled points of smooth motion without slack droppers."""
-    size, outputs = 1e-4, real_outputs(fmu_catenary)
+    size, outputs = 1e-4, fmu_catenary.continuous_outputs()
     gentle = {"pantograph[1].force": 0.0, "pantograph[2].force": 0.0, "solver.step": size, "solver.alpha": 0.0}
     p = catenary(LINE | TRAVELS[travel] | gentle | {"damping.stiffness": 0.01})
     references = [p.reference(name) for name in outputs]

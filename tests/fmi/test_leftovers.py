@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from harness import Instance
-from models import Case, each_case
+from models import Case, each_case, each_case_but
 
 LENGTH = 0.002
 
@@ -103,7 +103,7 @@ def test_the_time_that_waits_belongs_to_the_state(any_fmu, instance, case):
     assert p.all_values() == fresh.all_values()
 
 
-@each_case
+@each_case_but("Parallel")  # which has no derivatives
 def test_outputs_do_not_vary_with_what_is_held_in_a_leftover(any_fmu, instance, case):
     """As differences over the leftover have it; the slopes in time stay those of the instant."""
     p = instance(case.parameters)

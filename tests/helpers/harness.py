@@ -65,6 +65,11 @@ class Fmu:
     def names(self, causality: str) -> list[str]:
         return [v.name for v in self.description.modelVariables if v.causality == causality]
 
+    def continuous_outputs(self) -> list[str]:
+        """Those that have derivatives: no counts, switches, averages, nor what is told for the next step."""
+        outputs = (v for v in self.description.modelVariables if v.causality == "output" and v.type == "Real")
+        return [v.name for v in outputs if v.variability != "discrete"]
+
     def slave(self, name: str = "instance") -> FMU2Slave:
         """A binding that has loaded the library but has no instance yet."""
         return FMU2Slave(

@@ -68,6 +68,13 @@ MODELS = [
             ),
             "Wire": Case({"drive": "Wire", "contact.c": 50.0}, {"wire_height": Signal([(0.012, 25.0, 0.0)])}),
             "Bench": Case({"drive": "Bench", "bench.acceleration": 3.0}, {}),
+            "compliant wire": Case(
+                {"drive": "Wire", "contact.c": 20.0, "wire.compliance": 2e-6, "wire.compliance_previous": 1e-6},
+                {
+                    "wire_height": Signal([(0.012, 25.0, 0.0)], -0.00036),
+                    "wire.compliance": Signal([(1e-6, 30.0, 0.0)], 2e-6),
+                },
+            ),
         },
         smallest={},
         others={"m1": 9.0, "suspension": "LinearFree", "bench.frequency": 7.0},
@@ -96,6 +103,15 @@ MODELS = [
                     "pantograph[2].position": Signal([(5.0, 9.0, 0.0)], 95.0),
                 },
             ),
+            **{
+                exchange: Case(
+                    {"exchange": exchange, "line.spans": 2, "pantograph[1].start": 20.0, "pantograph[1].speed": 40.0}
+                    | {"pantograph[1].static_force": 110.0, "exchange.step": 0.01}
+                    | PRESSING,
+                    {"pantograph[1].force": Signal.cubed_sines([90.0], [1.3], 120.0)},
+                )
+                for exchange in ("Sequential", "Parallel")
+            },
         },
         smallest={"line.spans": 1},
         others={"line.spans": 3, "contact_wire.mass": 1.0, "travel": "Position", "pantograph[1].position": 20.0},

@@ -1,0 +1,134 @@
+"""The wire as an affine map of the contact force: what the line tells before a step is what the step then gives."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from harness import Instance, refusal
+
+SPEED = 250 / 3.6
+LINE = {"line.spans": 4, "pantograph[1].start": 90.0, "pantograph[1].static_force": 120.0}
+MAP = [f"pantograph[1].{name}" for name in ("free_height", "compliance", "compliance_previous")]
+HEIGHT = "pantograph[1].wire_height"
+
+
+def begun(catenary, exchange: str, size: float, **parameters: float) -> Instance:
+    """At rest under 120 N; its communication step is `size` s."""
+    line = {**LINE, "exchange": exchange, "exchange.step": size, "pantograph[1].force": 120.0, **parameters}
+    return catenary({**line, "pantograph[1].speed": SPEED})
+
+
+def force(n: int) -> float:
+    """N, at the end of step n: smooth, from 120 N on."""
+    return 120.0 + 25.0 * np.sin(0.13 * n)
+
+
+@pytest.mark.parametrize("travel", ["Speed", "Position"])
+@pytest.mark.parametrize("size", [0.5e-3, 1e-3, 7e-3])
+def test_sequential_tells_the_height_of_every_force_at_the_end(catenary, travel, size):
+    """Also of forces far from those before; the step itself is that of a line which tells nothing."""
+    moves = {"travel": travel, "pantograph[1].position": 90.0}
+    lines = [begun(catenary, exchange, size, **moves) for exchange in ("Sequential", "Target")]
+    largest = 0.0
+    for n in range(1, 61):
+        free, compliance, previous = lines[0].reals(MAP)
+        begin, end = (120.0 if n == 1 else force(n - 1)), force(n) + (30.0 if n % 7 == 0 else 0.0)
+        if n % 7 == 1 and n > 1:
+            begin = force(n - 1) + (30.0 if (n - 1) % 7 == 0 else 0.0)
+        for p in lines:
+            p["pantograph[1].force"] = end
+            if travel == "Position":
+                p["pantograph[1].position"] = 90.0 + SPEED * size * n
+            p.step(size)
+        if n > 1 or travel == "Speed":  # before the first step a position does not tell the speed
+            told = free + previous * begin + compliance * end
+            largest = max(largest, abs(told - lines[0][HEIGHT]))
+        assert lines[0].reals([HEIGHT, "energy.work"]) == pytest.approx(
+            lines[1].reals([HEIGHT, "energy.work"]), abs=1e-15
+        )
+        assert compliance > 0 and (previous > 0) == (n == 1)
+    assert largest < 1e-12  # m: no dropper changes its state
+
+
+@pytest.mark.parametrize("size", [1e-3, 3e-3])
+def test_parallel_tells_the_height_of_both_forces_to_come(catenary, size):
+    """Against a line in Target that is told each force at the end of its step: the map is a step ahead of it."""
+    parallel, target = begun(catenary, "Parallel", size), begun(catenary, "Target", size)
+    forces = [120.0, *(force(n) + (20.0 if n % 5 == 0 else 0.0) for n in range(1, 60))]
+    heights, told = [target[HEIGHT]], []
+    for n in range(1, 60):
+        free, compliance, previous = parallel.reals(MAP)
+        told.append(free + previous * forces[n - 1] + compliance * forces[n])
+        parallel["pantograph[1].force"] = forces[n - 1]
+        parallel.step(size)
+        target["pantograph[1].force"] = forces[n]
+        target.step(size)
+        heights.append(target[HEIGHT])
+    np.testing.assert_allclose(told, heights[1:], atol=1e-12)
+
+
+@pytest.mark.parametrize("speed", [0.0, 30.0, 80.0])
+def test_a_taut_string_gives_way_by_its_impedance(catenary, speed):
+    """A force that grows to F in a step H moves a string under it by F H / (4 sqrt(T m)), at any speed below sqrt(T/m).
+
+    With G = 1/(2 m c) for |x| < c t the displacement under a force that moves slower than c is the integral of
+    F/(2 sqrt(T m)) over the time since. Wire alone, no bending stiffness, no damping; a step in which the waves pass
+    many elements and no support.
+    """
+    tension, mass, size = 20000.0, 1.35, 0.02
+    bare = {"dropper.count": 0, "contact_wire.EI": 0.0, "damping.mass": 0.0, "damping.stiffness": 0.0}
+    fine = {"line.spans": 2, "mesh.element": 0.1, "solver.step": 2e-4, "solver.alpha": 0.0}
+    p = begun(catenary, "Sequential", size, **bare, **fine, **{"pantograph[1].start": 29.0})
+    p["pantograph[1].speed"] = speed
+    p.step(size)
+    compliance = size / (4 * np.sqrt(tension * mass))
+    assert p["pantograph[1].compliance"] == pytest.approx(compliance, rel=0.02)  # the mesh disperses
+
+
+def test_forces_at_the_start_are_not_asked_for_before_they_are_known(catenary):
+    """What a tool with a loop at the start would have to iterate for."""
+    maps = []
+    for start in (0.0, 120.0, 300.0):
+        p = catenary({**LINE, "exchange": "Parallel", "pantograph[1].speed": SPEED}, initialize=False)
+        p.slave.setupExperiment()
+        p.slave.enterInitializationMode()
+        p["pantograph[1].force"] = start
+        maps.append(p.reals(MAP).tolist())
+    assert maps[0] == maps[1] == maps[2]
+    free, compliance, previous = maps[0]
+    assert free + (compliance + previous) * 120.0 == pytest.approx(0.0, abs=1e-4)
+
+
+def test_heights_count_from_the_wire_under_the_static_forces(catenary):
+    forces = {"pantograph[1].static_force": 120.0, "pantograph[2].static_force": 90.0, "pantograph[2].start": 150.0}
+    plain = catenary({"line.spans": 4, "pantograph[1].start": 90.0, "pantograph[2].start": 150.0})
+    told = catenary({"line.spans": 4, "pantograph[1].start": 90.0, **forces})
+    for p in (plain, told):
+        p.step(1e-3)
+    names = [f"pantograph[{i}].wire_height" for i in (1, 2)]
+    static = catenary(
+        {"line.spans": 4, "pantograph[1].start": 90.0, **forces, "pantograph[1].force": 120.0}
+        | {"pantograph[2].force": 90.0}
+    )
+    np.testing.assert_allclose(static.reals(names), 0.0, atol=1e-15)
+    lift = static.reals([f"pantograph[{i}].uplift" for i in (1, 2)])
+    np.testing.assert_allclose(plain.reals(names) - told.reals(names), lift, atol=1e-12)
+
+
+def test_another_step_than_was_told_is_said_once(catenary):
+    p = begun(catenary, "Sequential", 1e-3)
+    for size in (1e-3, 1e-3, 2e-3, 1e-3, 1e-3):
+        p.step(size)
+    lines = [message.text for message in p.log if message.category == "logStatusWarning"]
+    assert len(lines) == 1 and "a communication step of 0.002 s: the affine map was told for one of 0.001 s" in lines[0]
+
+
+def test_parallel_has_no_directional_derivatives(catenary):
+    p = begun(catenary, "Parallel", 1e-3)
+    p.step(1e-3)
+    assert (
+        refusal(p.slave.getDirectionalDerivative, [p.reference(HEIGHT)], [p.reference("pantograph[1].force")], [1.0])
+        != 0
+    )
+    assert "exchange = Parallel: has no directional derivatives" in p.log[-1].text
