@@ -150,7 +150,7 @@ def test_ctrl_c_keeps_the_rows_so_far():
 
 def test_a_run_that_cannot_go_on_keeps_its_rows_in_the_file(tmp_path):
     with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
-        system = System(catenary, pantograph, {}, [{}], Journey(70.0), Coupling(max_iterations=1))
+        system = System(catenary, pantograph, {}, [{}], Journey(70.0), Coupling("implicit", max_iterations=1))
         with pytest.raises(ZSpringError, match=r"converge.*; the rows so far are kept in .*line\.csv"):
             run_and_write(system, tmp_path, "png", parquet=False)
     assert len(read_result(tmp_path / "line.csv").time) >= 1
@@ -174,9 +174,9 @@ def test_steps_are_compared(zspring, tmp_path):
     rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
     assert [(row["scheme"], float(row["step [s]"])) for row in rows] == [
         ("implicit", 5e-4),
-        *(("explicit", step) for step in (5e-4, 1e-3, 2e-3, 5e-3)),
+        *((scheme, step) for scheme in ("sequential", "parallel") for step in (5e-4, 1e-3, 2e-3, 5e-3)),
         *(("implicit", step) for step in (1e-3, 2e-3, 5e-3)),
-        *(("jacobi", step) for step in (5e-4, 1e-3, 2e-3, 5e-3)),
+        *((scheme, step) for scheme in ("explicit", "jacobi") for step in (5e-4, 1e-3, 2e-3, 5e-3)),
     ]
     errors = {(row["scheme"], row["step [s]"]): float(row["rms [N]"]) for row in rows}
     assert errors["implicit", "0.001"] < 0.5 < errors["explicit", "0.001"] < 3 < errors["jacobi", "0.001"]

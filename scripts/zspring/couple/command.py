@@ -87,10 +87,10 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
     "--coupling",
     "scheme",
     of=SCHEMES,
-    default="implicit",
-    help="implicit: forces and heights at the end of each step agree, by Newton's method. explicit: "
-    "pantograph, then catenary, once a step (Gauss-Seidel). jacobi: both side by side with the last values, "
-    "as plain co-simulation tools do.",
+    help="sequential: pantograph, then catenary, once a step, with the wire as an affine map of the force; forces "
+    "and heights agree. parallel: the same side by side, as plain co-simulation tools step. implicit: they agree by "
+    "Newton's method, with steps taken back. explicit: pantograph, then catenary, with an extrapolated wire. jacobi: "
+    "both side by side with the last values.  [default: sequential; implicit with drive Force]",
 )
 @choice(
     "--drive", of=DRIVES, default="Wire", help="The pantograph solves the contact (Wire) or the master does (Force)."
@@ -104,7 +104,7 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
     kind=click.Path(path_type=Path, dir_okay=False),
     metavar="FILE.ssp",
     help="Write the system as an archive of SSP 1.0 instead of running it. Tools that exchange values once a "
-    "step give with it what --coupling jacobi --start-up direct gives.",
+    "step give with it what --coupling parallel --start-up direct gives.",
 )
 @click.option("--parquet", is_flag=True, help="Write the series as Parquet too.")
 @output_option("results/couple")
@@ -121,8 +121,9 @@ def couple(pantograph, output, suffix, **given) -> None:
     speed, uplift, supply, ssp_path = (given[name] for name in ("speed", "uplift", "supply", "ssp_path"))
     if uplift is not None and supply:
         raise ZSpringError(f"--uplift {uplift:g} and --mean-force {supply}: give one of them")
+    given["scheme"] = given["scheme"] or ("sequential" if given["drive"] == "Wire" else "implicit")
     if ssp_path:
-        given |= {"scheme": "jacobi", "drive": "Wire", "start_up": "direct"}
+        given |= {"scheme": "parallel", "drive": "Wire", "start_up": "direct"}
     coupling = Coupling(given["scheme"], given["drive"], given["tolerance"])
 
     spans = given["spans"]

@@ -16,7 +16,7 @@ STEPS = (0.5e-3, 1e-3, 2e-3, 5e-3)  # s
 
 def compared(drive: str) -> tuple[str, ...]:
     """The schemes that know this drive of the pantographs."""
-    return ("explicit", "implicit", "jacobi") if drive == "Wire" else ("explicit", "implicit")
+    return ("sequential", "parallel", "implicit", "explicit", "jacobi") if drive == "Wire" else ("implicit", "explicit")
 
 
 @dataclass(frozen=True)

@@ -97,7 +97,8 @@ def comparison_figure(rows: Sequence[Comparison], title: str) -> Figure:
     """Error of the contact force by communication step; the first row is the reference."""
     figure = new_figure(6.5, 4.5)
     axes = figure.subplots()
-    for scheme, colour in zip(dict.fromkeys(row.scheme for row in rows[1:]), ("tab:red", "tab:blue", "tab:green")):
+    for i, scheme in enumerate(dict.fromkeys(row.scheme for row in rows[1:])):
+        colour = f"C{i}"
         own = [row for row in rows[1:] if row.scheme == scheme]
         steps = [1e3 * row.step for row in own]
         axes.loglog(steps, [row.rms for row in own], "o-", color=colour, label=f"{scheme}, rms")

@@ -18,7 +18,7 @@ _OSP = "http://opensimulationplatform.com/SSP/OSPAnnotations"
 
 LINE_ELEMENT = "catenary"
 SET_NAME = "initialValues"  # of both sets: Ecos applies one name to all components
-UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}}
+UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}, "m/N": {"kg": "-1", "s": "2"}}
 
 
 def element_name(i: int) -> str:
@@ -30,8 +30,8 @@ def write_ssp(run: LineRun, path: Path) -> None:
     """Write the archive of a run that is set up, with its parameters, first inputs and communication step.
 
     A system structure says what is connected, not when values are exchanged: tools that do it once a step,
-    side by side, give what start_up "direct" with the scheme "jacobi" gives. The pantographs rest at height 0;
-    the offset in the connection takes off what static_force lifts the wire at the start.
+    side by side, give what start_up "direct" with the scheme "parallel" gives: the wire is exchanged as an affine map
+    of the force, its heights measured from where static_force lifts it at the start.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -43,7 +43,9 @@ def write_ssp(run: LineRun, path: Path) -> None:
             archive.write(copy, sources[fmu])
         system = ET.Element(_tag("System"), name="line", description="Pantographs on an overhead contact line")
         elements = ET.SubElement(system, _tag("Elements"))
-        starts = {LINE_ELEMENT: (line_fmu, run.wire_start)}
+        parameters, inputs = run.wire_start
+        starts = {LINE_ELEMENT: (line_fmu, ({**parameters, **run.exchange}, inputs))}
+        count = len(run.head_starts)
         starts |= {element_name(i): (pantograph, start) for i, start in enumerate(run.head_starts)}
         for name, (fmu, (parameters, inputs)) in starts.items():
             values = Path(folder, f"{name}.ssv")
@@ -56,10 +58,10 @@ def write_ssp(run: LineRun, path: Path) -> None:
                 {"name": name, "type": "application/x-fmu-sharedlibrary", "source": sources[fmu]},
                 implementation="CoSimulation",
             )
-            _add_connectors(component, fmu, name, len(run.lifted))
+            _add_connectors(component, fmu, name, count)
             bindings = ET.SubElement(component, _tag("ParameterBindings"))
             ET.SubElement(bindings, _tag("ParameterBinding"), source=f"resources/{values.name}")
-        _add_connections(system, run.lifted)
+        _add_connections(system, count)
         archive.writestr("SystemStructure.ssd", _description(run, system))
 
 
@@ -67,11 +69,15 @@ def _tag(name: str) -> str:
     return f"{{{_SSD}}}{name}"
 
 
+# From the pantograph's side: its input by the catenary's output, pantograph[p].OUTPUT.
+MAP = {"wire_height": "free_height", "wire.compliance": "compliance", "wire.compliance_previous": "compliance_previous"}
+
+
 def _add_connectors(component: ET.Element, fmu: Fmu, name: str, count: int) -> None:
     if name == LINE_ELEMENT:
-        names = [f"pantograph[{i + 1}].{kind}" for kind in ("force", "wire_height") for i in range(count)]
+        names = [f"pantograph[{i + 1}].{kind}" for kind in ("force", *MAP.values()) for i in range(count)]
     else:
-        names = ["wire_height", "contact.force"]
+        names = [*MAP, "contact.force"]
     connectors = ET.SubElement(component, _tag("Connectors"))
     for connector in names:
         variable = fmu.variables[connector]
@@ -79,18 +85,17 @@ def _add_connectors(component: ET.Element, fmu: Fmu, name: str, count: int) -> N
         ET.SubElement(element, f"{{{_SSC}}}Real", unit=variable.unit)
 
 
-def _add_connections(system: ET.Element, lifted: list[float]) -> None:
+def _add_connections(system: ET.Element, count: int) -> None:
     connections = ET.SubElement(system, _tag("Connections"))
-    for i, height in enumerate(lifted):
+    for i in range(count):
         name, contact = element_name(i), f"pantograph[{i + 1}]"
-        ends = (name, "contact.force", LINE_ELEMENT, f"{contact}.force")
-        _connect(connections, *ends)
-        wire = _connect(connections, LINE_ELEMENT, f"{contact}.wire_height", name, "wire_height")
-        ET.SubElement(wire, f"{{{_SSC}}}LinearTransformation", factor="1", offset=repr(-height))
+        _connect(connections, name, "contact.force", LINE_ELEMENT, f"{contact}.force")
+        for head_input, output in MAP.items():
+            _connect(connections, LINE_ELEMENT, f"{contact}.{output}", name, head_input)
 
 
-def _connect(connections: ET.Element, source: str, output: str, target: str, name: str) -> ET.Element:
-    return ET.SubElement(
+def _connect(connections: ET.Element, source: str, output: str, target: str, name: str) -> None:
+    ET.SubElement(
         connections,
         _tag("Connection"),
         startElement=source,
@@ -105,7 +110,7 @@ def _description(run: LineRun, system: ET.Element) -> bytes:
     for prefix, uri in ("ssd", _SSD), ("ssc", _SSC), ("osp", _OSP):
         ET.register_namespace(prefix, uri)
     tool = run.system.catenary.description
-    root = ET.Element(_tag("SystemStructureDescription"), version="1.0", name="pantograph and catenary")
+    root = ET.Element(_tag("SystemStructureDescription"), version="1.0", name="pantograph_and_catenary")
     root.set("generationTool", f"{tool.generationTool} {tool.version}")
     root.append(system)
     units = ET.SubElement(root, _tag("Units"))

@@ -13,11 +13,19 @@ from .result import LineResult
 class Recorder:
     """What is kept of every communication point."""
 
-    def __init__(self, rows: int, wire: PreparedCalls, heads: Sequence[PreparedCalls], supports: np.ndarray):
+    def __init__(
+        self,
+        rows: int,
+        wire: PreparedCalls,
+        heads: Sequence[PreparedCalls],
+        supports: np.ndarray,
+        datum: Sequence[float],
+    ):
+        """datum    m, what the catenary's heights under the pantographs are measured from"""
         count = len(heads)
         names = [f"pantograph[{i + 1}].{name}" for name in ("x", "wire_height") for i in range(count)]
         names += [f"support.uplift[{i + 2}]" for i in range(len(supports))]  # the first is the anchor
-        self._supports = supports
+        self._supports, self._datum = supports, np.array(datum)
         self._wire, self._slack = wire.reals(names), wire.integers(["droppers.slack"])
         self._heads = [
             head.reals(["contact.force", "head.z", "zspring.moment_alpha", "zspring.moment_beta"]) for head in heads
@@ -43,7 +51,7 @@ class Recorder:
             time=step * np.arange(len(slack)),
             position=wire[:, :count],
             contact_force=heads[:, :, 0],
-            wire_height=wire[:, count : 2 * count],
+            wire_height=wire[:, count : 2 * count] + self._datum,
             head_height=heads[:, :, 1],
             support_position=self._supports,
             support_uplift=wire[:, 2 * count :],

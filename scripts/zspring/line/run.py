@@ -19,7 +19,7 @@ from .calls import PreparedCalls
 from .journey import FittedJourney
 from .recorder import Recorder
 from .result import LineResult
-from .schemes import GaussSeidel, Implicit, Jacobi, Pantographs
+from .schemes import MAPPED, GaussSeidel, Implicit, Jacobi, Mapped, Pantographs
 from .sides import ContactInMaster, ContactInPantograph, Wire
 from .stated import UNDISTURBED
 from .system import System
@@ -68,14 +68,20 @@ class LineRun:
         for head, (parameters, inputs) in zip(heads, self.head_starts):
             head.start(parameters, inputs)
         wire.start(*self.wire_start)
+        datum = wire.get([f"pantograph[{i + 1}].wire_height" for i in range(count)])
+        self.lifted = datum  # m, at the start by static_force
+        if self.exchange:
+            parameters, inputs = self.wire_start
+            wire.start({**parameters, **self.exchange}, inputs)
+        else:
+            datum = [0.0] * count
         self.settings = _settings(system, self.journey, wire, heads)
 
         wire_calls, *head_calls = (self._stack.enter_context(PreparedCalls(i)) for i in (wire, *heads))
-        self._wire = Wire(wire_calls, count)
-        self.lifted = list(self._wire.heights)  # m, at the start by static_force
+        self._wire = Wire(wire_calls, datum)
         self._uplifts = [calls.reals([f"uplift.{self.journey.uplift_on}"]) for calls in head_calls]
         self._scheme = self._make_scheme(head_calls)
-        self._record = Recorder(self.steps + 1, wire_calls, head_calls, self.line.supports)
+        self._record = Recorder(self.steps + 1, wire_calls, head_calls, self.line.supports, datum)
         self._record.take(0, self._shifts(0.0))
 
     @cached_property
@@ -98,8 +104,21 @@ class LineRun:
             inputs |= {f"{name}.force": force, f"{name}.speed": self.journey.speed}
         return parameters, inputs
 
-    def _make_scheme(self, head_calls: Sequence[PreparedCalls]) -> Implicit | GaussSeidel | Jacobi:
+    @property
+    def exchange(self) -> dict[str, Value]:
+        """Parameters with which the catenary tells its affine map; its heights then count from the lifted wire."""
+        scheme = self.system.coupling.scheme
+        if scheme not in MAPPED:
+            return {}
+        forces = {f"pantograph[{i + 1}].static_force": force for i, force in enumerate(self._static_forces)}
+        exchange = parse(self.system.catenary.variables["exchange"], MAPPED[scheme])
+        return {**forces, "exchange": exchange, "exchange.step": self.journey.step}
+
+    def _make_scheme(self, head_calls: Sequence[PreparedCalls]) -> Mapped | Implicit | GaussSeidel | Jacobi:
         coupling, forces = self.system.coupling, self._static_forces
+        if coupling.scheme in MAPPED:
+            mapped = [ContactInPantograph(calls) for calls in head_calls]
+            return Mapped(self._wire, mapped, coupling.scheme == "parallel")
         if coupling.drive == "Wire":
             sides: Pantographs = [ContactInPantograph(calls) for calls in head_calls]
         else:

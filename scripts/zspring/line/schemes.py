@@ -13,7 +13,8 @@ from .sides import ContactInMaster, ContactInPantograph, Wire
 
 Pantographs = Sequence[ContactInPantograph | ContactInMaster]
 
-SCHEMES, DRIVES = ("implicit", "explicit", "jacobi"), ("Wire", "Force")
+MAPPED = {"sequential": "Sequential", "parallel": "Parallel"}  # the catenary's exchange, of schemes with its affine map
+SCHEMES, DRIVES = (*MAPPED, "implicit", "explicit", "jacobi"), ("Wire", "Force")
 UNDAMPED = 6  # outer iterations before the corrections are halved
 
 
@@ -21,7 +22,10 @@ UNDAMPED = 6  # outer iterations before the corrections are halved
 class Coupling:
     """How the FMUs are coupled.
 
-    scheme          "implicit": forces and heights at the end of each step agree
+    scheme          "sequential": each step once, the pantographs first, with the wire as an affine map of their force:
+                    what "implicit" gives, unless a dropper slackens or tightens otherwise than the map foresaw
+                    "parallel": each step once, side by side, with such a map
+                    "implicit": forces and heights at the end of each step agree, by steps taken back
                     "explicit": each step once, the pantographs first (Gauss-Seidel)
                     "jacobi": each step once, with the values at its begin, as plain co-simulation tools do
     drive           of the pantographs: "Wire" (they solve the contact) or "Force" (the master does)
@@ -29,7 +33,7 @@ class Coupling:
     max_iterations  steps of the catenary for one communication step; for "implicit"
     """
 
-    scheme: str = "implicit"
+    scheme: str = "sequential"
     drive: str = "Wire"
     tolerance: float = 1e-6
     max_iterations: int = 30
@@ -40,10 +44,31 @@ class Coupling:
             raise ZSpringError(f"coupling {self.scheme!r}: must be one of {', '.join(SCHEMES)}")
         if self.drive not in DRIVES:
             raise ZSpringError(f"drive {self.drive!r}: must be one of {', '.join(DRIVES)}")
-        if self.scheme == "jacobi" and self.drive != "Wire":
-            raise ZSpringError(f"coupling jacobi with drive {self.drive}: needs drive Wire")
+        if self.scheme in (*MAPPED, "jacobi") and self.drive != "Wire":
+            raise ZSpringError(f"coupling {self.scheme} with drive {self.drive}: needs drive Wire")
         if not self.tolerance > 0:
             raise ZSpringError(f"tolerance = {self.tolerance:g}: must be above 0")
+
+
+class Mapped:
+    """With the wire as the catenary's affine map of the forces: its documentation has the theory.
+
+    The pantographs meet the wire as it will be under the forces that they are about to have. Sequential: the
+    catenary is then told these. Parallel: it steps with those at the begin of the step, and tells its map a step ahead.
+    """
+
+    def __init__(self, wire: Wire, pantographs: Sequence[ContactInPantograph], parallel: bool):
+        self._wire, self._pantographs, self._parallel = wire, pantographs, parallel
+        self.forces = [pantograph.force for pantograph in pantographs]
+
+    def advance(self, time: float, size: float, shifts: Sequence[float]) -> None:
+        """As Jacobi.advance."""
+        begin = self.forces
+        self.forces = [
+            pantograph.meet(time, size, free - shift, compliance, previous)
+            for pantograph, free, compliance, previous, shift in zip(self._pantographs, *self._wire.maps(), shifts)
+        ]
+        self._wire.step(time, size, begin if self._parallel else self.forces)
 
 
 class Jacobi:

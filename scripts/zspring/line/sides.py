@@ -9,24 +9,31 @@ from .calls import Jacobian, PreparedCalls
 
 
 class Wire:
-    """The catenary under the forces of all pantographs."""
+    """The catenary under the forces of all pantographs.
 
-    def __init__(self, calls: PreparedCalls, count: int):
+    datum   m, what its heights under the pantographs are measured from
+    """
+
+    def __init__(self, calls: PreparedCalls, datum: Sequence[float]):
+        count = len(datum)
+
         def names(variable: str) -> list[str]:
             return [f"pantograph[{i + 1}].{variable}" for i in range(count)]
 
         self.save, self.restore, self._step = calls.save, calls.restore, calls.step
-        self._count = count
+        self._count, self._datum = count, datum
         self.steps = 0  # made, those that were taken back included
         self._forces = calls.reals(names("force"))
         self._motion = calls.reals(names("wire_height") + names("wire_velocity"))
+        self._maps = [calls.reals(names(part)) for part in ("free_height", "compliance", "compliance_previous")]
         self._compliance = Jacobian(calls, names("wire_height"), names("force"))
         self.look()
 
     def look(self) -> None:
         """Take `heights` in m and `velocities` in m/s, at the contacts, from the FMU."""
         motion = self._motion.get()
-        self.heights, self.velocities = motion[: self._count], motion[self._count :]
+        self.heights = [height + datum for height, datum in zip(motion, self._datum)]
+        self.velocities = motion[self._count :]
 
     def step(self, time: float, size: float, forces: Sequence[float]) -> None:
         """One step at whose end the contact forces, N, are these."""
@@ -34,6 +41,11 @@ class Wire:
         self._step(time, size)
         self.steps += 1
         self.look()
+
+    def maps(self) -> tuple[list[float], Array[c_double], Array[c_double]]:
+        """Heights at the end of the next step without force there, m; by the forces at its end and begin, m/N."""
+        free, compliance, previous = (part.get() for part in self._maps)
+        return [height + datum for height, datum in zip(free, self._datum)], compliance, previous
 
     def compliance(self) -> list[Array[c_double]]:
         """Heights at the end of the last step by the forces there, m/N: [i][j] is height j by force i."""
@@ -46,6 +58,7 @@ class ContactInPantograph:
     def __init__(self, calls: PreparedCalls):
         self.save, self.restore, self._step = calls.save, calls.restore, calls.step
         self._wire, self._force = calls.reals(["wire_height"]), calls.reals(["contact.force"])
+        self._map = calls.reals(["wire_height", "wire.compliance", "wire.compliance_previous"])
         self._stiffness = Jacobian(calls, ["contact.force"], ["wire_height"])
         self.force = self._force.get()[0]
 
@@ -56,6 +69,12 @@ class ContactInPantograph:
         return self._force.get()[0]
 
     explicit_step = step
+
+    def meet(self, time: float, size: float, free: float, compliance: float, previous: float) -> float:
+        """The contact force, N, after a step on a wire that gives way to it; m, m/N."""
+        self._map.set((free, compliance, previous))
+        self._step(time, size)
+        return self._force.get()[0]
 
     def slopes(self) -> tuple[float, float]:
         """Of the last answer by the wire's height, N/m, and by the force that acted, 1."""
