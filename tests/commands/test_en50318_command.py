@@ -232,7 +232,7 @@ def test_an_interrupted_validation_goes_on_with_what_is_missing(tmp_path):
     assert [row["label"] for row in finished] == ["200", "230", "260", "290"]
     assert finished[: len(kept)] == kept
     # 30 m + 55.56 m/s * 2 * 210 m / (55.56 + 122.28) m/s, on a line of 240 m
-    assert "200: warning: pantograph 1: what is evaluated goes to 180 m, forces from 161.2 m on are not those" in out
+    assert "200: warning: pantograph 1: what is evaluated goes to 180 m, but from 161.2 m on forces are under" in out
     assert "are outside their accepted ranges: " in out and "actual minimum at 290 by -" in out
 
 

@@ -12,7 +12,7 @@ from zspring.couple.report import evaluated, sections, summary
 from zspring.errors import ZSpringError
 from zspring.fmu import CATENARY, Fmu, installed_fmu
 from zspring.line.journey import FittedJourney, Journey, LineExtent
-from zspring.line.limits import near_wave_speed, of_series
+from zspring.line.limits import FAR_END, near_wave_speed, of_series
 from zspring.line.result import LineResult
 from zspring.line.run import run_line
 from zspring.line.stated import UNDISTURBED, Stated
@@ -116,7 +116,7 @@ def test_a_run_that_has_nothing_else_is_evaluated_where_it_is_asked_for_alone():
 
 
 def test_the_summary_says_from_where_on_the_far_end_tells():
-    told = "from 300 m on forces are not those of a longer line: the far end reflects the start"
+    told = f"from 300 m on {FAR_END}"
     assert summary(passage(25.0, 475.0, 300.0), [Section(5, 6, 50.0)])[-1] == told
     assert told not in summary(passage(25.0, 299.0, 300.0), [None])
 
@@ -126,7 +126,7 @@ def test_sections_beyond_are_warned_of():
     assert of_series(series, Section(5, 6, 50.0)) == []
     for section, end in ((Section(5, 7, 50.0), 350), (None, 475)):
         (line,) = of_series(series, section)
-        assert f"goes to {end} m, forces from 300 m on are not those of a longer line" in line
+        assert f"goes to {end} m, but from 300 m on {FAR_END}" in line
     assert of_series(replace(series, stated=Stated()), None) == []
 
 

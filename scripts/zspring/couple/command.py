@@ -141,7 +141,11 @@ def couple(pantograph, output, suffix, **given) -> None:
         if ssp_path:
             run.export_ssp(run.aimed(system, aim) if aim else system, ssp_path)
             return
-        what = f"Line {given['line_set'] or 'of the FMU'}, pantograph {pantograph.parameter_set or 'of the FMU'}"
+        chosen = given["line_set"], pantograph.parameter_set
+        own_line = "the FMU's own" if given["line_fmu"] else "EN 50318:2002 (the FMU's own)"
+        own_head = "the FMU's own" if pantograph.fmu_path else "DSA-380 (the FMU's own)"
+        named = (Path(each).stem if each else own for each, own in zip(chosen, (own_line, own_head)))
+        what = "Line {}, pantograph {}".format(*named)
         with claimed(output):
             if given["compare_steps"]:
                 run.compare_and_write(run.aimed(system, aim) if aim else system, output, suffix, what)

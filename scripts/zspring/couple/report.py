@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from ..errors import ZSpringError
 from ..line.journey import LineExtent
+from ..line.limits import FAR_END
 from ..line.result import LineResult
 from ..line.statistics import FIGURES, Section, statistics
 from ..text_tables import aligned
@@ -71,4 +72,4 @@ def _far_end(result: LineResult) -> list[str]:
     if not reached:
         return []
     where = dict.fromkeys(f"{until:.0f} m" for until in reached)
-    return [f"from {' and '.join(where)} on forces are not those of a longer line: the far end reflects the start"]
+    return [f"from {' and '.join(where)} on {FAR_END}"]

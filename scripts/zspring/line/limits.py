@@ -12,6 +12,7 @@ from .waves import wave_speed
 
 NEAR_WAVE_SPEED = 0.7  # of the contact wire's wave speed: what papers quote from EN 50119 as the limit of operation
 SMALL = 0.2  # m; small displacements: tensions and lengths of the wires, and the steady arms, as they are at rest
+FAR_END = "forces are under the influence of the line's far end, which reflects the waves of the start"
 
 
 def near_wave_speed(catenary: Fmu, line: Mapping[str, Value], speed: float) -> list[str]:
@@ -39,7 +40,6 @@ def of_series(series: Series, section: Section | None) -> list[str]:
         end = section.bounds[1] if section else float(series.position[-1])
         if end > until:
             found.append(
-                f"warning: {series.name}: what is evaluated goes to {end:.4g} m, forces from {until:.4g} m on are not "
-                "those of a longer line: the far end reflects the start"
+                f"warning: {series.name}: what is evaluated goes to {end:.4g} m, but from {until:.4g} m on {FAR_END}"
             )
     return found
