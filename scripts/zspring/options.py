@@ -137,6 +137,14 @@ parameters_option = option(
     help="Set the parameters of a pantograph: the name of a set (`zspring info --sets` lists them) or an "
     "SSV file of SSP; FILE#PREFIX reads those whose names begin with PREFIX and a dot. --set goes before it.",
 )
+
+
+def data_sets_option(name: str):
+    """Which data sets of a universal file to read."""
+    text = "Of a universal file, where nodes and directions do not tell the driving point, e.g. 1,3."
+    return option(name, default=(), kind=WholeNumbers(), metavar="LIST", help=text)
+
+
 format_option = choice("--format", "suffix", of=["png", "svg"], default="png", help="Format of the figure.")
 
 

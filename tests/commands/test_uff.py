@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import pyuff
 
+from commands import in_process
 from linear import PUBLISHED, LinearPantograph
 from zspring.bench.curves import Curve, Source
 from zspring.bench.measured import read_curves
@@ -283,6 +284,19 @@ def test_where_several_points_could_be_meant_the_choice_is_asked_for(tmp_path):
     assert [curve.acceleration[0] for curve in curves] == [3.0, 4.0]
     with pytest.raises(ZSpringError, match=r"data set 4 is no frequency response \(those are: 1, 2, 3\)"):
         read_curves(Source(path, data_sets=(4,)))
+
+
+@pytest.mark.parametrize(
+    "command",
+    [["frf", "--no-extremes", "--frequencies", "5", "--measured"], ["en50318", "--frf-bands", "1,15", "--frf"]],
+)
+def test_commands_choose_data_sets(tmp_path, command):
+    path = files(tmp_path, {"node": 0})
+    option = "--frf-data-sets" if command[0] == "en50318" else "--measured-data-sets"
+    command = [*command, path, "--output", tmp_path / "out", "--set", "friction=Coulomb", "--jobs", "1"]
+    status, _, err = in_process(*command)
+    assert status == 1 and "choose by data_sets = [1] or its option (--frf-data-sets, --measured-data-sets)" in err
+    assert in_process(*command, option, "1")[0] == 0
 
 
 def test_two_driving_points_and_two_data_sets_of_one_level_are_doubtful(tmp_path):

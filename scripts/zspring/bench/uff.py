@@ -103,7 +103,8 @@ def _choice(candidates: Sequence[DataSet]) -> str:
         shown.append(f"{data.number} ({', '.join([*(text[i] for i in telling if text[i]), place])})")
     more = len(candidates) - len(shown)
     listed = ", ".join(shown) + (f" and {more} more" if more else "")
-    return f"choose by data_sets = [{candidates[0].number}], or --frf-data-sets {candidates[0].number}, from {listed}"
+    first = candidates[0].number
+    return f"choose by data_sets = [{first}] or its option (--frf-data-sets, --measured-data-sets) from {listed}"
 
 
 def _direction(number: int) -> str:

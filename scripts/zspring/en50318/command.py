@@ -13,9 +13,9 @@ from ..options import (
     NOT_NEGATIVE,
     POSITIVE,
     Spans,
-    WholeNumbers,
     choice,
     copy_examples,
+    data_sets_option,
     jobs_option,
     line_fmu_option,
     numbers,
@@ -82,13 +82,7 @@ EDITIONS = ("en-50318-2002", "benchmark-2015")
     default="specimen",
     help="Measured force positive along the displacement, or pressing the head down.",
 )
-@option(
-    "--frf-data-sets",
-    default=(),
-    kind=WholeNumbers(),
-    metavar="LIST",
-    help="Of a universal file, where nodes and directions do not tell the driving point.",
-)
+@data_sets_option("--frf-data-sets")
 @option("--frf-amplitude", kind=POSITIVE, metavar="A", help="Peak acceleration in m/s2, if --frf does not tell.")
 @option(
     "--fixture-mass",

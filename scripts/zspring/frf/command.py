@@ -12,6 +12,7 @@ from ..options import (
     FILE,
     POSITIVE,
     choice,
+    data_sets_option,
     format_option,
     jobs_option,
     numbers,
@@ -100,6 +101,7 @@ STANDARD = FrfSettings()
     help="Its force positive along the displacement, or pressing the head down.",
 )
 @option("--measured-amplitude", kind=POSITIVE, metavar="A", help="Its peak acceleration in m/s2, if it does not tell.")
+@data_sets_option("--measured-data-sets")
 @click.option("--no-extremes", is_flag=True, help="Measure these frequencies only: no search for extremes, no table.")
 @jobs_option("Sweeps at a time (amplitudes; single points from rest).")
 @format_option
@@ -111,6 +113,7 @@ def frf(
     measured,
     measured_force,
     measured_amplitude,
+    measured_data_sets,
     no_extremes,
     jobs,
     suffix,
@@ -134,7 +137,7 @@ def frf(
     from .overlay import amplitudes_of, stated
     from .run import Wanted, default_folder, run_frf  # matplotlib is slow to load
 
-    source = Source(measured, measured_amplitude, measured_force) if measured else None
+    source = Source(measured, measured_amplitude, measured_force, data_sets=measured_data_sets) if measured else None
     with pantograph.opened(BENCH_PARAMETERS) as (fmu, parameters):
         if source:
             parameters, direction = stated(fmu, source, parameters, direction)
