@@ -62,8 +62,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # what a terminal cannot show is shown as its code
             stream.reconfigure(errors="backslashreplace")
+    arguments = sys.argv[1:] if arguments is None else arguments
     try:
-        return commands.main(arguments, standalone_mode=False) or 0
+        for argument in arguments:  # results name their sources in UTF-8
+            if argument.encode(errors="replace").decode() != argument:
+                raise ZSpringError(f"{argument}: is not in the encoding of this system's file names: rename it")
+        return commands.main(list(arguments), standalone_mode=False) or 0
     except click.ClickException as error:
         message, status = error.format_message(), 1
     except ZSpringError as error:

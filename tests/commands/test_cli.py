@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from commands import PNG, head, receptances, start, table, zspring
+from commands import PNG, head, in_process, receptances, start, table, zspring
 from harness import bench_point
 from linear import PUBLISHED, LinearPantograph
 from zspring.cli import main
@@ -364,6 +364,13 @@ def test_info_takes_patterns_and_names_what_fits_none(tmp_path):
     assert [line.split()[0] for line in out.splitlines()[1:]] == ["zspring.L1", "zspring.L2", "gravity"]
     _, err = zspring(tmp_path, "info", "gravity", "zspring.M?", "zspring.K?", status=1)
     assert "no variable 'zspring.K?' in the FMU" in err
+
+
+def test_a_name_that_is_no_text_is_refused(tmp_path):
+    """A byte of Latin-1 where names are UTF-8: results could not name it."""
+    status, _, err = in_process("linearize", "--output", tmp_path / "Pr\udcfcfstand")
+    assert status == 1 and "is not in the encoding of this system's file names: rename it" in err
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
