@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write the figure in the format that the file's suffix names."""
-    figure.savefig(path, dpi=150)
+    """Write the figure in the format that the file's suffix names; names in its texts may have any characters."""
+    for text in figure.findobj(Text):
+        if "$" in text.get_text() and "mathdefault" not in text.get_text():  # as matplotlib's own numbers have
+            text.set_parse_math(False)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from font", UserWarning)
+        figure.savefig(path, dpi=150)
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -16,6 +16,7 @@ import pytest
 from commands import in_process
 from zspring.cli import commands
 from zspring.en50318.edition import packaged_edition
+from zspring.figures import new_figure, save
 from zspring.parameter_sets import find_set
 
 BINARY = bytes(range(256)) * 4
@@ -178,3 +179,17 @@ def test_an_odd_input_ends_in_one_line_or_is_taken(folder, monkeypatch, argument
         status, _, err = in_process(*arguments)
     lines = [line for line in err.splitlines() if line.startswith("zspring: ")]
     assert status in (0, 1) and len(lines) == status, err
+
+
+def test_names_in_pictures_are_no_formulas_and_may_have_any_letter(tmp_path):
+    """Titles name files. Numbers on a logarithmic axis are formulas, and stay some."""
+    figure = new_figure(4, 3)
+    axes = figure.add_subplot()
+    axes.semilogy([1, 2], [1e-3, 1e3])
+    axes.set_title("a$_{$b 测试")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for _ in range(2):
+            save(figure, tmp_path / "figure.png")
+    assert not axes.title.get_parse_math()
+    assert all(label.get_parse_math() for label in axes.get_yticklabels())
