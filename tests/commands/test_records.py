@@ -109,6 +109,7 @@ def test_a_second_run_in_a_folder_ends_before_it_works(tmp_path):
     assert not list((tmp_path / "out").glob(".*"))
 
 
+RUN = ["--step", "0.01", "--stop", "0.02"]
 POINT = ["--amplitudes", "1", "--frequencies", "5"]
 
 
@@ -118,13 +119,19 @@ POINT = ["--amplitudes", "1", "--frequencies", "5"]
         (["frf", *POINT], ["--set", "m1=7"], "frf.csv", "m1: 7.12 kg, now 7 kg"),
         (["frf", *POINT], ["--direction", "down"], "frf.csv", "direction: up, now down"),
         (["static", *POINT[:2], "--rates", "1"], ["--rates", "2"], "stiffness.csv", "rates: 0.001 m/s, now 0.002 m/s"),
+        (["simulate", *RUN], ["--stop", "0.03"], "simulation.csv", r"times: 0 to 0.02 s by 0.01 s, now 0 to 0.03 s .*"),
+        (["simulate", *RUN], ["--input", "other.csv"], "simulation.csv", "inputs: none, now other.csv"),
         (["mechanism"], ["--frequency", "3"], "mechanism.csv", "frequency: 2 Hz, now 3 Hz"),
         (["linearize"], ["--set", "c1=1"], "linear-linear.npz", "c1: 0 N.s/m, now 1 N.s/m"),
         (["linearize"], ["--frequencies", "1,2"], "linear-linear.npz", r"frequencies: 0.05 .* \.\.\., now 1 2 Hz"),
     ],
 )
-def test_finished_results_are_repeated_but_not_overwritten_by_others(tmp_path, command, other, file, differs):
+def test_finished_results_are_repeated_but_not_overwritten_by_others(
+    tmp_path, monkeypatch, command, other, file, differs
+):
     out = tmp_path / "out"
+    monkeypatch.chdir(tmp_path)
+    Path("other.csv").write_text("time [s],contact_force [N]\n0,120\n1,130\n")
     for _ in range(2):
         assert in_process(*command, "--output", out)[0] == 0
     before = {path: path.read_bytes() for path in out.iterdir()}
@@ -134,6 +141,15 @@ def test_finished_results_are_repeated_but_not_overwritten_by_others(tmp_path, c
         rf"zspring: {out / file} is of other settings \({differs}\): remove it, or give another --output\n", err
     )
     assert {path: path.read_bytes() for path in out.iterdir()} == before
+
+
+def test_other_inputs_in_a_file_of_the_same_name_are_other_settings(tmp_path):
+    path = tmp_path / "force.csv"
+    command = ["simulate", *RUN, "--input", path, "--output", tmp_path / "out"]
+    for force, status in ((130, 0), (130, 0), (131, 1)):
+        path.write_text(f"time [s],contact_force [N]\n0,120\n0.02,{force}\n")
+        assert in_process(*command)[0] == status
+    assert "simulation.csv is of other settings (SHA-256 of the inputs: " in in_process(*command)[2]
 
 
 def test_a_fit_is_repeated_but_not_overwritten_by_one_with_other_settings_or_data(tmp_path):

@@ -64,5 +64,5 @@ def simulate(pantograph, drive, input_path, interpolation, stop_time, step, erro
         experiment = fmu.description.defaultExperiment
         default = float(experiment.stopTime), float(experiment.stepSize)
         course = plan(inputs, interpolation, stop_time, step, default)
-        source = f", inputs of {input_path.name}" if input_path else ""
+        source = input_path.name if input_path else ""
         run_simulation(fmu, parameters, inputs, course, output, suffix, error_estimate, source)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -17,6 +18,7 @@ from ..figures import save
 from ..fmu import Fmu, Instance
 from ..heads import file_head, synthetic_note
 from ..interrupt import Interrupted, stop_on_interrupt
+from ..records import keep_others
 from ..tables import TableFile, write_table
 from ..variables import Value, parse, text
 from . import estimate
@@ -39,6 +41,15 @@ class Course:
     def at(self, i: int) -> dict[str, float]:
         """The inputs at communication point i."""
         return {name: float(values[i]) for name, values in self.values.items()}
+
+    def described(self, source: str) -> dict[str, str]:
+        """All of it as text, by key; `source` names what the inputs come from."""
+        last, first_step = len(self.times) - 1, float(self.times[1] - self.times[0])
+        head = {"times": f"{self.time_text(0)} to {self.time_text(last)} s by {first_step:.12g} s"}
+        if self.values:
+            content = b"".join(name.encode() + values.tobytes() for name, values in sorted(self.values.items()))
+            head |= {"inputs": source, "SHA-256 of the inputs": hashlib.sha256(content).hexdigest()}
+        return head
 
     def time_text(self, i: int) -> str:
         """The time of communication point i as the input counts it; no two are alike."""
@@ -95,7 +106,7 @@ def simulate(
     """Simulate and write simulation.csv, the figure simulation.<suffix> and perhaps errors.csv into the folder.
 
     error_estimate  run at half the internal step, too
-    source          what the inputs come from, for the title
+    source          the name of what the inputs come from
     Raises Interrupted after Ctrl-C (the rows so far are kept) and FmuError when the FMU refuses something.
     """
     variables = fmu.variables
@@ -109,8 +120,10 @@ def simulate(
         for name in set(DRIVEN_BY.values()) & set(course.values) - {DRIVEN_BY[drive]}:
             print(f"{name}: has no effect with drive {drive}; see --drive", file=sys.stderr)
         columns = ["time [s]", *(f"{name} [{unit}]" if unit else name for name, unit in units.items())]
+        head = file_head(fmu, used, course.described(source))
+        keep_others(path, head)
         table = TableFile(path, columns, digits=12)
-        table.begin(file_head(fmu, used))
+        table.begin(head)
 
         def keep(i: int, row: Sequence[Value]) -> None:
             table.write([course.time_text(i), *row])
@@ -137,7 +150,7 @@ def simulate(
             reals = {name: unit for name, unit in units.items() if variables[name].type == "Real"}
             pick = [outputs.index(name) for name in reals]
             found = estimate.estimates(reals, course.times, rows.T[pick], finer.T[pick])
-            head = file_head(fmu, used, {"half the internal step": f"{step:g} s"})
+            head |= {"half the internal step": f"{step:g} s"}
             labels = ["output", "unit", "rms", "largest", "at [s]", "range"]
             written.append(write_table(folder / "errors.csv", head, labels, map(astuple, found)))
 
@@ -167,10 +180,10 @@ def _title(fmu: Fmu, used: Mapping[str, Value], source: str) -> str:
         text(fmu.variables[name], used[name]) for name in ("drive", "suspension", "friction")
     )
     model = f"Z-spring, friction {friction}" if suspension == "ZSpring" else f"suspension {suspension}"
-    if drive == "Bench":
-        source = f" with {used['bench.frequency']:g} Hz, {used['bench.acceleration']:g} m/s²{source}"
+    bench = f" with {used['bench.frequency']:g} Hz, {used['bench.acceleration']:g} m/s²" if drive == "Bench" else ""
+    inputs = f", inputs of {source}" if source else ""
     step = f"internal step {1e3 * used['solver.step']:g} ms"
-    return f"Pantograph, drive {drive}{source}\n{model}, {step}{synthetic_note(fmu, used)}"
+    return f"Pantograph, drive {drive}{bench}{inputs}\n{model}, {step}{synthetic_note(fmu, used)}"
 
 
 def _run(
