@@ -14,8 +14,6 @@ using namespace zspring::fmi;
 
 namespace {
 
-using State = zspring::Numbers;
-
 // `action`, of an instance and the arguments, does what the call is for; where it returns no status, it is fmi2OK.
 template <class Action, class... Arguments>
 fmi2Status guarded(fmi2Component component, unsigned allowed, const char* function, Action&& action,
@@ -45,13 +43,6 @@ fmi2Status guarded(fmi2Component component, unsigned allowed, const char* functi
 
 void need(const void* pointer, size_t n, const char* name) {
   if (n > 0 && !pointer) refuse("%s: must not be NULL", name);
-}
-
-void store(State numbers, fmi2FMUstate* state) {
-  if (*state)
-    *static_cast<State*>(*state) = std::move(numbers);
-  else
-    *state = new State(std::move(numbers));
 }
 
 template <class Value>
@@ -168,47 +159,44 @@ fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference[], size_t n, 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, any_phase, __func__, [&](Instance& i) {
     need(state, 1, "FMUstate");
-    store(i.snapshot(), state);
+    *state = i.states.keep(i.snapshot(), *state);
   });
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return guarded(c, any_phase, __func__, [&](Instance& i) {
-    need(state, 1, "FMUstate");
-    i.restore(*static_cast<State*>(state));
-  });
+  return guarded(c, any_phase, __func__, [&](Instance& i) { i.restore(i.states.of(state)); });
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return guarded(c, any_phase, __func__, [&](Instance&) {
-    if (!state) return;
-    delete static_cast<State*>(*state);
+  return guarded(c, any_phase, __func__, [&](Instance& i) {
+    if (!state || !*state) return;
+    i.states.forget(*state);
     *state = nullptr;
   });
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  return guarded(c, any_phase, __func__, [&](Instance&) {
-    need(state, 1, "FMUstate"), need(size, 1, "size");
-    *size = serialized_size(*static_cast<State*>(state));
+  return guarded(c, any_phase, __func__, [&](Instance& i) {
+    need(size, 1, "size");
+    *size = serialized_size(i.states.of(state));
   });
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  return guarded(c, any_phase, __func__, [&](Instance&) {
-    need(state, 1, "FMUstate"), need(bytes, 1, "serializedState");
-    const State& numbers = *static_cast<State*>(state);
+  return guarded(c, any_phase, __func__, [&](Instance& i) {
+    need(bytes, 1, "serializedState");
+    const Numbers& numbers = i.states.of(state);
     if (size < serialized_size(numbers)) refuse("size: is less than fmi2SerializedFMUstateSize told");
     serialize(numbers, bytes);
   });
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
-  return guarded(c, any_phase, __func__, [&](Instance&) {
+  return guarded(c, any_phase, __func__, [&](Instance& i) {
     need(bytes, 1, "serializedState"), need(state, 1, "FMUstate");
-    State numbers = deserialize(bytes, size);
+    Numbers numbers = deserialize(bytes, size);
     Instance::check_state(numbers);
-    store(std::move(numbers), state);
+    *state = i.states.keep(std::move(numbers), *state);
   });
 }
 

@@ -135,6 +135,9 @@ void Instance::directional_derivative(const fmi2ValueReference unknown[], size_t
                                       double result[]) {
   Inputs change;
   for (size_t i = 0; i < n_known; ++i) {
+    // Masters that know the dependencies alone, OMSimulator among them, name whatever an unknown depends on, be it an
+    // enumeration, with a direction of 0.
+    if (direction[i] == 0 && known[i] < variable_count) continue;
     const Variable& v = variable(known[i], Type::Real);
     if (!v.is_input()) refuse("%s: must be an input to be known in a directional derivative", v.name);
     if (!std::isfinite(direction[i])) refuse("%s: direction = %g: must be a finite number", v.name, direction[i]);

@@ -9,6 +9,7 @@
 
 #include "log.hpp"
 #include "state_machine.hpp"
+#include "states.hpp"
 #include "variables.hpp"
 
 namespace zspring::fmi {
@@ -54,6 +55,7 @@ class Instance {
 
   Phase phase;
   Log log;
+  States states;
 
  private:
   static constexpr double never = std::numeric_limits<double>::max();  // s; finite, as all numbers of a state are

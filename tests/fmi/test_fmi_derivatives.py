@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from fmpy.fmi2 import fmi2Error
 
-from harness import PRECISE, Pantograph, Signal, differences
+from harness import PRECISE, Pantograph, Signal, differences, refusal
 from models import each_case_but
 
 # Drive, its input, the size of the difference.
@@ -156,3 +157,15 @@ def test_the_slope_of_the_position_is_the_velocity(pantograph):
     p.step(0.01)
     slopes = p.slave.getRealOutputDerivatives([p.reference(n) for n in ("head.z", "head.v", "lower_frame.z")], [1] * 3)
     np.testing.assert_allclose(slopes, p.reals(["head.v", "head.a", "lower_frame.v"]), rtol=1e-12)
+
+
+def test_what_does_not_vary_may_be_of_any_kind(pantograph):
+    """OMSimulator names all dependencies of an unknown, enumerations among them, with a direction of 0."""
+    p = pantograph({"drive": "Wire"})
+    p.step(1e-3)
+    force = [p.reference("contact.force")]
+    known = [p.reference(name) for name in ("drive", "static_force", "wire_height", "solver.max_iterations")]
+    alone = p.slave.getDirectionalDerivative(force, [known[2]], [1.0])
+    assert p.slave.getDirectionalDerivative(force, known, [0.0, 0.0, 1.0, 0.0]) == alone
+    assert refusal(p.slave.getDirectionalDerivative, force, known, [0.0, 1.0, 1.0, 0.0]) == fmi2Error
+    assert "static_force: must be an input" in p.log[-1].text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from ctypes import byref, c_void_p, create_string_buffer
+from ctypes import addressof, byref, c_size_t, c_void_p, create_string_buffer
 
 import numpy as np
 from fmpy.fmi2 import fmi2Error
@@ -249,3 +249,27 @@ def test_saving_the_state_before_every_step_changes_nothing(instance, case):
             p.run(STEP, 1, [], signals=case.inputs)
         saved.slave.freeFMUstate(state)
     assert saved.all_values() == plain.all_values()
+
+
+def test_a_pointer_that_is_no_state_of_the_instance_is_left_alone(pantograph):
+    """FMI4j stores into a pointer that it never initialised, fmusim frees a wrong one."""
+    other, p = pantograph(), pantograph()  # the log of the last one is read
+    memory = create_string_buffer(b"not a state of any instance", 64)
+    before = memory.raw
+    state = c_void_p(addressof(memory))
+    p.slave.fmi2GetFMUstate(p.slave.component, byref(state))
+    assert state.value != addressof(memory) and memory.raw == before
+    theirs, size = other.slave.getFMUstate(), c_size_t()
+    for wrong in (c_void_p(addressof(memory)), theirs):
+        address = wrong.value
+        for call, arguments in (
+            (p.slave.fmi2SetFMUstate, [wrong]),
+            (p.slave.fmi2FreeFMUstate, [byref(wrong)]),
+            (p.slave.fmi2SerializedFMUstateSize, [wrong, byref(size)]),
+        ):
+            assert refusal(call, p.slave.component, *arguments) == fmi2Error
+            assert "must be a state that this instance has given" in p.log[-1].text
+        assert wrong.value == address and memory.raw == before
+    p.slave.setFMUstate(state)
+    p.slave.freeFMUstate(state)
+    other.slave.freeFMUstate(theirs)
