@@ -43,6 +43,22 @@ def test_every_file_is_valid_by_the_schema_of_ssp(exported):
         schema.assertValid(etree.fromstring(content))
 
 
+def test_the_archive_keeps_the_rules_of_omsimulator(exported):
+    """Names are identifiers, connections have no transformation, its own master is annotated: docs/modelica.md."""
+    path, result = exported
+    root = etree.fromstring(members(path, ".ssd")["SystemStructure.ssd"])
+    named = [
+        element.get("name") for element in root.iter() if etree.QName(element).localname in ("System", "Component")
+    ]
+    assert all(name.isidentifier() for name in [root.get("name"), *named])
+    assert not [element for element in root.iter() if etree.QName(element).localname == "LinearTransformation"]
+    (master,) = (element for element in root.iter() if etree.QName(element).localname == "FixedStepMaster")
+    annotation = next(a for a in master.iterancestors() if etree.QName(a).localname == "Annotation")
+    assert annotation.get("type") == "org.openmodelica"
+    assert etree.QName(annotation.getparent().getparent()).localname == "System"
+    assert float(master.get("stepSize")) == result.time[1]
+
+
 def test_ecos_runs_the_archive_to_the_same_result(exported):
     """Another tool's fixed-step algorithm, at every communication step, to the precision of files.
 

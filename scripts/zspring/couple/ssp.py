@@ -15,6 +15,7 @@ from ..plain_fmu import copy_without_enumerations
 _SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
 _SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
 _OSP = "http://opensimulationplatform.com/SSP/OSPAnnotations"
+_OMS = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"
 
 LINE_ELEMENT = "catenary"
 SET_NAME = "initialValues"  # of both sets: Ecos applies one name to all components
@@ -62,6 +63,7 @@ def write_ssp(run: LineRun, path: Path) -> None:
             bindings = ET.SubElement(component, _tag("ParameterBindings"))
             ET.SubElement(bindings, _tag("ParameterBinding"), source=f"resources/{values.name}")
         _add_connections(system, count)
+        _annotate_for_omsimulator(system, run.journey.step)
         archive.writestr("SystemStructure.ssd", _description(run, system))
 
 
@@ -94,6 +96,17 @@ def _add_connections(system: ET.Element, count: int) -> None:
             _connect(connections, LINE_ELEMENT, f"{contact}.{output}", name, head_input)
 
 
+def _annotate_for_omsimulator(system: ET.Element, step: float) -> None:
+    """Its fixed-step master, without which OMSimulator ends in a crash."""
+    annotations = ET.SubElement(system, _tag("Annotations"))
+    annotation = ET.SubElement(annotations, f"{{{_SSC}}}Annotation", type="org.openmodelica")
+    own = ET.SubElement(annotation, f"{{{_OMS}}}Annotations")
+    information = ET.SubElement(own, f"{{{_OMS}}}SimulationInformation")
+    tolerances = {"absoluteTolerance": "0.0001", "relativeTolerance": "0.0001"}
+    master = {"description": "oms-ma", "stepSize": repr(step), **tolerances}
+    ET.SubElement(information, f"{{{_OMS}}}FixedStepMaster", master)
+
+
 def _connect(connections: ET.Element, source: str, output: str, target: str, name: str) -> None:
     ET.SubElement(
         connections,
@@ -107,7 +120,7 @@ def _connect(connections: ET.Element, source: str, output: str, target: str, nam
 
 def _description(run: LineRun, system: ET.Element) -> bytes:
     """SystemStructure.ssd, with the communication step as the Open Simulation Platform annotates it."""
-    for prefix, uri in ("ssd", _SSD), ("ssc", _SSC), ("osp", _OSP):
+    for prefix, uri in ("ssd", _SSD), ("ssc", _SSC), ("osp", _OSP), ("oms", _OMS):
         ET.register_namespace(prefix, uri)
     tool = run.system.catenary.description
     root = ET.Element(_tag("SystemStructureDescription"), version="1.0", name="pantograph_and_catenary")
