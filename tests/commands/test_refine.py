@@ -141,6 +141,13 @@ def test_points_without_a_response_divide_the_curve():
     assert found(pantograph.receptance, [3.0]) == ([], []) == found(pantograph.receptance, [3.0, 4.0])
 
 
+def test_an_extreme_on_a_point_of_the_grid_is_measured_about_it():
+    """Symmetric, so that the vertex of every parabola is that point: it is asked for once, by the grid."""
+    (peak,), asked = found(lambda f: np.exp(-((f - 5.0) ** 2)), np.arange(3.0, 7.1, 0.25))
+    assert peak.frequency == pytest.approx(5.0, abs=1e-9) and peak.magnitude == pytest.approx(1.0, rel=1e-9)
+    assert len(asked) == len(set(asked)) and 5.0 not in asked
+
+
 def test_extremes_of_the_linear_models_are_exact(own_fmu):
     """Against a search in an independent receptance."""
     with own_fmu.instances() as (instance,):

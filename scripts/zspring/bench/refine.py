@@ -142,7 +142,11 @@ class _Curve:
         self._jumps: set[float] = set()  # lower ends of intervals too narrow to halve
 
     def _measure(self, frequency: float, at_extreme: bool) -> Generator[tuple[float, bool], FrfPoint, FrfPoint]:
-        point = yield round(frequency, 6), at_extreme
+        frequency = float(f"{frequency:.9g}")
+        for point in self._points:
+            if point.frequency == frequency:
+                return point
+        point = yield frequency, at_extreme
         if math.isfinite(abs(point.H)):
             self._points = sorted([*self._points, point], key=lambda p: p.frequency)
         return point

@@ -101,7 +101,7 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
     print(*lines, sep="\n")
     print("written:", *written)
     if comparison:
-        tell(comparison.remarks, written[-1])
+        tell([remark.replace('force = "contact"', "--measured-force contact") for remark in comparison.remarks], table)
     for course in courses.values():
         tell([*report.error_warnings(course.errors), *report.doubtful_lines(course.points)], course.path)
     failed = sum(point.status.startswith(FAILED) for point in every)
