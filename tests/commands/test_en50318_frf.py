@@ -143,3 +143,16 @@ def test_a_force_of_the_wrong_sign_is_said(pantograph, tmp_path):
     found = compare_frf(pantograph, Source(path), {"suspension": 2}, EDGES, None, 1, threading.Event())
     assert "positive imaginary part" in found.remarks[1] and "contact force" in found.remarks[1]
     assert all(abs(error.phase_mean) > 170 for error in found.levels[0].errors)
+
+
+def test_points_of_the_model_that_do_not_settle_are_counted(pantograph, tmp_path):
+    """A frame hardly damped, driven near its resonance at 12 Hz, not so at 5 Hz; and one well damped."""
+    path = tmp_path / "bench.csv"
+    path.write_text("frequency [Hz],amplitude [m/s2],magnitude [mm/N],phase [deg]\n5,1,0.1,-90\n12.2,1,0.1,-90\n")
+    remarks = {}
+    for c3 in (1.0, 200.0):
+        compared = compare_frf(
+            pantograph, Source(path), {**LINEAR, "c3": c3, "c1": 5.0 * c3}, EDGES, None, 1, threading.Event()
+        )
+        remarks[c3] = [remark for remark in compared.remarks if "settled" in remark]
+    assert remarks == {1.0: ["1 points of the model had not settled after 400 periods"], 200.0: []}

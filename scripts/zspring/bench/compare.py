@@ -17,7 +17,7 @@ from ..variables import Value, with_unit
 from .conditions import STATED, read_conditions
 from .curves import Curve, Source, in_band, sign_warning
 from .measured import read_curves
-from .model import BenchModel
+from .model import SETTLED, BenchModel
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,9 @@ def compare_frf(
             (found,) = model.receptances([given], curves)
         finally:
             model.close()
+    late = sum(taken >= SETTLED.max_periods for _, periods in found for taken in periods)
+    if late:
+        remarks.append(f"{late} points of the model had not settled after {SETTLED.max_periods} periods")
     levels = [LevelComparison(c, H, band_errors(c, H, edges)) for c, (H, _) in zip(curves, found)]
     if not stop.is_set() and not any(np.isfinite(c.computed).any() for c in levels):
         raise ZSpringError(f"{source.path}: no point could be computed with these parameters")
