@@ -9,7 +9,7 @@ import click
 from ..options import copy_examples, format_option, jobs_option, opened, option, output_option, pantograph_options
 from ..records import claimed
 
-EXAMPLE = ("identify.toml", "bench.csv")
+EXAMPLE = ("identify.toml", "bench.csv", "independent.csv")
 
 
 @click.command()
