@@ -142,7 +142,7 @@ def test_the_animation_needs_no_other_file_and_shows_the_simulated_states(tmp_pa
     [
         (["--frequency", "0"], ["bench.frequency", "0"]),
         (["--frequency", "0.1"], ["0.1 Hz", "stroke"]),
-        (["--frequency", "nan"], ["bench.frequency", "nan"]),
+        (["--frequency", "nan"], ["--frequency", "nan", "finite"]),
         (["--set", "suspension=Linear"], ["suspension", "Linear"]),
         (["--set", "drive=Force"], ["drive", "sets"]),
     ],
