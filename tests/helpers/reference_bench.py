@@ -13,7 +13,7 @@ SAMPLES = 64  # of a period
 
 
 def imposed_sine(frequency: float, peak: float, t: float, order: int = 0) -> float:
-    """peak sin(2 pi f t) by a ramp of the fifth degree, which leaves rest without a jump; its derivative of an order."""
+    """peak sin(2 pi f t) behind a ramp of the fifth degree, which leaves rest without a jump; or a derivative."""
     omega, x = 2 * math.pi * frequency, min(t / RAMP, 1.0)
     level = x**3 * (10 - 15 * x + 6 * x * x)
     slope = (30 * x * x - 60 * x**3 + 30 * x**4) / RAMP
