@@ -35,6 +35,8 @@ void meet_variation(const Hht& hht, const Boundary& db0, MechanicalState& d);
 
 const Signal& position_input(Drive drive, const Inputs& u);
 void set_forces(const Inputs& u, double tau, Boundary& b);
+// Positions closer in time are not told apart, where communication steps are uneven, s.
+inline double resolved_time(const Parameters& p) { return p.solver.step / 16; }
 double largest_internal_step(const Parameters& p, const Held& held);  // s
 
 class CommunicationStep {
@@ -96,10 +98,11 @@ class CommunicationStep {
   std::optional<Discard> run_inputs(SimulationState& state, const Signal& position, OnStep& on_step) const {
     const double H = held_.length;
     MechanicalState& s = state.mechanical;
-    const ImposedMotion motion(state.motion, position, H);
+    std::optional<ImposedMotion> motion;
+    if (p_.drive != Drive::Force) motion.emplace(state.motion, position, H, resolved_time(p_));
     const auto boundary = [&](double tau, Boundary& b) {
       set_forces(held_.inputs, tau, b);
-      if (p_.drive != Drive::Force) motion.at(tau, b);
+      if (motion) motion->at(tau, b);
     };
     const Count n = internal_steps(H, p_.solver.step);
     const double steps = static_cast<double>(n);
@@ -110,7 +113,7 @@ class CommunicationStep {
       boundary((i + 1) / steps * H, b);
       if (std::optional<Discard> discard = cover(s, boundary, b, i / steps * H, H / steps, 0, on_step)) return discard;
     }
-    if (p_.drive != Drive::Force) state.motion = motion.end();
+    if (motion) state.motion = motion->end();
     return std::nullopt;
   }
 

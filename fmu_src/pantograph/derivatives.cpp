@@ -53,7 +53,8 @@ MechanicalState Simulation::state_change(const Inputs& direction, const Signal& 
   // Only values vary; the way a position moves does not.
   Signal dposition = followed;
   dposition.value = position, dposition.rate = dposition.curvature = 0;
-  const ImposedMotion motion(before_.motion.variation(), dposition, held_.length);
+  const MotionState still = before_.motion.variation();
+  const ImposedMotion motion(still, dposition, held_.length, resolved_time(p));
   const bool moves = p.drive == Drive::Displacement || p.drive == Drive::Wire;
 
   const auto boundary_change = [&](double tau) {
@@ -67,7 +68,7 @@ MechanicalState Simulation::state_change(const Inputs& direction, const Signal& 
   meet_variation(hht_, db0, d);
   if (p.drive == Drive::Displacement) {
     Boundary b0;
-    ImposedMotion(before_.motion, followed, held_.length).at(0, b0);
+    ImposedMotion(before_.motion, followed, held_.length, resolved_time(p)).at(0, b0);
     d.work = mechanics_.mass[U1] * b0.velocity * db0.velocity;
   }
   double tau = 0;

@@ -8,31 +8,38 @@ MotionState MotionState::variation() const {
   MotionState d;
   d.positions = positions;
   d.curvatures = curvatures;
-  std::fill_n(d.positions.value, Samples::most, 0.0);
-  std::fill_n(d.curvatures.value, Samples::most, 0.0);
+  d.closing = closing;
+  std::fill_n(d.positions.value, Positions::most, 0.0);
+  std::fill_n(d.positions.missed, Positions::most, 0.0);
+  std::fill_n(d.curvatures.value, Curvatures::most, 0.0);
   return d;
 }
 
-ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, double length)
-    : start_(start), end_(start), input_(input), length_(length) {
+ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, double length, double resolved)
+    : start_(start), end_(start), input_(input), length_(length), closing_(length) {
+  if (length < start.closing / 16) closing_ = start.closing;
   end_.position = position(length);
+  end_.closing = closing_ > length ? closing_ - length : length;
+  Positions& reached = end_.positions;
+  const double told = input.has_derivatives ? length : 0;
   if (start.positions.count == 0)
-    for (int i = 0; i + 1 < Samples::most; ++i) end_.positions.append(length, start.position);
-  end_.positions.append(length, end_.position);
+    for (int i = 0; i + 1 < Positions::dense; ++i) reached.append(length, start.position, resolved, told);
+  else if (input.has_derivatives)
+    reached.begin_at(input.value);
+  reached.append(length, input.has_derivatives ? input.at(length) : end_.position, resolved, told);
 
   if (input.has_curvature) {
-    Samples& given = end_.curvatures;
-    given.append(start.positions.last_length, input.curvature);
-    given.count = std::min<Count>(given.count, 3);
+    Curvatures& given = end_.curvatures;
+    given.append(start.positions.last_length, input.curvature, resolved);
     // What was seen over short steps tells nothing of the end of a much longer one.
-    if (given.count > 1 && length <= 2 * given.age[1])
-      curvature_change_ = Interpolant(given).value(length) - input.curvature;
+    const Interpolant path(given, length / 2, 3);
+    if (path.has_older()) curvature_change_ = path.value(length) - input.curvature;
     Boundary b;
     at(length, b);
     end_.velocity = b.velocity;
     end_.acceleration = b.acceleration + b.acceleration_change;
   } else {
-    const Interpolant path(end_.positions);
+    const Interpolant path(reached, reached.closest);
     end_.velocity = path.slope();
     end_.acceleration = path.curvature();
     end_.curvatures.count = 0;
@@ -40,8 +47,8 @@ ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, doub
 }
 
 double ImposedMotion::position(double tau) const {
-  const double x = tau / length_;
-  if (!input_.has_derivatives) return start_.position + x * (input_.value - start_.position);
+  const double x = tau / closing_;
+  if (!input_.has_derivatives) return start_.position + tau / length_ * (input_.value - start_.position);
   return input_.at(tau) + (1 - x) * (start_.position - input_.value);
 }
 
@@ -49,7 +56,7 @@ void ImposedMotion::at(double tau, Boundary& b) const {
   const double x = tau / length_;
   b.position = position(tau);
   if (input_.has_curvature) {
-    b.velocity = input_.rate + tau * input_.curvature - (start_.position - input_.value) / length_;
+    b.velocity = input_.rate + tau * input_.curvature - (start_.position - input_.value) / closing_;
     b.acceleration = input_.curvature;
     b.acceleration_change = x * curvature_change_;
   } else {
