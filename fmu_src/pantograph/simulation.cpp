@@ -15,7 +15,6 @@ Text no_wire(const Inputs& u) {
 }  // namespace
 
 Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : mechanics_(parameters), hht_(mechanics_) {
-  if (inputs.wire.gives_way() && parameters.drive != Drive::Wire) refuse("%s", no_wire(inputs).chars);
   SimulationState state;
   state.mechanical = at_rest(inputs);
   state.motion.position = state.mechanical.boundary.position;

@@ -2,6 +2,8 @@
 // judges each call (subject.hpp). The target of libFuzzer.
 #include "calls.hpp"
 
+#include <algorithm>
+
 namespace fuzz {
 namespace {
 
@@ -12,21 +14,24 @@ constexpr int instances = 3, states = 3;
 Counts run(const std::uint8_t* data, std::size_t size) {
   Counts counts;
   Bytes in(data, size);
-  KeptState kept[states];
+  KeptState kept[instances][states];  // of each instance its own: they go from one to another as bytes alone
   std::vector<char> bytes;
   bool damaged = false;
   Expected original;
   Subject subjects[instances] = {Subject(counts), Subject(counts), Subject(counts)};
   while (!in.done()) {
-    Subject& s = subjects[in.one_in(4) ? in.below(instances) : 0];
+    const unsigned which = in.one_in(4) ? in.below(instances) : 0;
+    Subject& s = subjects[which];
     if (!s.exists()) {
       s.instantiate(in);
       continue;
     }
-    KeptState& state = kept[in.below(states)];
+    const unsigned place = in.below(states);
+    KeptState& state = kept[which][place];
     switch (in.below(32)) {
       case 0:
         s.free();
+        std::fill_n(kept[which], states, KeptState());
         break;
       case 1:
         s.setup(in);
@@ -64,6 +69,7 @@ Counts run(const std::uint8_t* data, std::size_t size) {
         break;
       case 13:
       case 14:
+        s.refuse(kept[(which + 1) % instances][place]);
         s.go_back(state);
         break;
       case 15:
@@ -109,10 +115,9 @@ Counts run(const std::uint8_t* data, std::size_t size) {
         s.step(in);
     }
   }
-  // States outlive the instances that made them no longer than some instance exists.
-  for (Subject& s : subjects)
-    for (int tries = 0; tries < 20 && !s.exists(); ++tries) s.instantiate(in);
-  for (KeptState& k : kept) subjects[0].forget(k);
+  for (unsigned i = 0; i < instances; ++i)
+    for (KeptState& k : kept[i])
+      if (subjects[i].exists()) subjects[i].forget(k);
   return counts;
 }
 

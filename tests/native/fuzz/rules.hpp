@@ -56,6 +56,7 @@ inline bool may_be_unknown(unsigned reference) {
 }
 
 inline bool may_be_known(unsigned reference, double direction) {
+  if (direction == 0 && reference < variable_count) return true;  // whatever its type
   return exists(reference, Type::Real) && variables[reference].causality == Causality::Input &&
          std::isfinite(direction);
 }

@@ -69,6 +69,12 @@ void Subject::go_back(const KeptState& kept) {
   if (has_stepped(expected_.state)) check_values();
 }
 
+void Subject::refuse(const KeptState& theirs) {
+  if (!theirs.state) return;
+  begin_call();
+  judge("fmi2SetFMUstate", fmi2SetFMUstate(component_, theirs.state), Refused);
+}
+
 // From a state of damaged bytes: what can be learnt from it.
 void Subject::adopt() {
   const double phase = number_at(snapshot(), 0);

@@ -68,6 +68,7 @@ class Subject {
 
   void keep(KeptState& kept);
   void go_back(const KeptState& kept);
+  void refuse(const KeptState& theirs);  // of another instance
   void forget(KeptState& kept);
   std::vector<char> serialize(const KeptState& kept);
   void deserialize(const std::vector<char>& bytes, KeptState& kept, const Expected* original);

@@ -122,7 +122,8 @@ void Subject::set_input(Bytes& in) {
   if (!is_settable(expected_.state)) return;
   const unsigned r = input_from(in);
   const double scale[] = {1e-4, 1e-3, 0.1, 1};
-  set_one(r, variables[r].start + static_cast<std::int8_t>(in.byte()) * in.pick(scale));
+  const double moved = variables[r].start + static_cast<std::int8_t>(in.byte()) * in.pick(scale);
+  set_one(r, std::clamp(moved, variables[r].min, variables[r].max));
 }
 
 void Subject::set_input_derivatives(Bytes& in) {
