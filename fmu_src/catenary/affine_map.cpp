@@ -37,7 +37,7 @@ bool Foresight::advance(const CommunicationStep& step, LineState& s, bool end_un
     v.is_used = end_unknown && is_there(step.at(i, step.length()), i);
     if (v.is_used) v.d.set_zero(), v.begin = 0, v.end = 1;
   }
-  if (!through(step, s)) return false;
+  if (!through(step, s, true)) return false;
   for (int i = 0; i < pantographs; ++i) std::swap(of_begin_[i], of_end_[i]);
   return true;
 }
@@ -63,7 +63,7 @@ bool Foresight::look(const LineState& s, double length, AffineMap maps[pantograp
   const Held held = going_on(line_, s, length);
   const CommunicationStep step(line_, s.passage, held);
   ahead_ = s;
-  if (!through(step, ahead_)) return false;
+  if (!through(step, ahead_, false)) return false;
   for (int i = 0; i < pantographs; ++i) {
     const Place place = line_.mesh.at(ahead_.passage[i].position);
     const auto compliance = [&](const Variation& v) { return v.is_used ? place.value.dot(place.of(v.d.u)) : 0; };
@@ -74,7 +74,7 @@ bool Foresight::look(const LineState& s, double length, AffineMap maps[pantograp
   return true;
 }
 
-bool Foresight::through(const CommunicationStep& step, LineState& s) {
+bool Foresight::through(const CommunicationStep& step, LineState& s, bool with_energies) {
   const double n = static_cast<double>(step.internal_steps()), length = step.length();
   const StepFactors& factors = hht_.factors(length / n);
   Loads l0 = step.loads(0);
@@ -82,7 +82,7 @@ bool Foresight::through(const CommunicationStep& step, LineState& s) {
   for (Count k = 1; k <= step.internal_steps(); ++k) {
     const double x = k / n;
     const Loads l1 = step.loads(x * length);
-    if (!hht_.step(factors, l0, l1, s)) return false;
+    if (!hht_.step(factors, l0, l1, s, with_energies)) return false;
     for (int i = 0; i < pantographs; ++i)
       for (Variation* v : {&of_begin_[i], &of_end_[i]}) {
         if (!v->is_used) continue;

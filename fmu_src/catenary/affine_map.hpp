@@ -45,7 +45,7 @@ class Foresight {
     double begin, end;
     bool is_used;
   };
-  bool through(const CommunicationStep& step, LineState& s);
+  bool through(const CommunicationStep& step, LineState& s, bool with_energies);
   bool is_there(const Passage& at, int i) const;
 
   const Line& line_;

@@ -142,13 +142,13 @@ void Hht::correct(const StepFactors& f, LineState& s) {
   s.internal = (f.hht_alpha / w) * s.internal - (1 / w) * ma_;
 }
 
-bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s) {
+bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s, bool with_energies) {
   const Parameters& p = line_.p;
-  const double work_before = l0.dot(s.u) + l1.dot(s.u);
+  const double work_before = with_energies ? l0.dot(s.u) + l1.dot(s.u) : 0;
   move_memory(f.hht_alpha, s.h, f.h, s.a_slope, s.a);
   const bool slope_known = tells_slope(f.h, s.h);
   if (slope_known) s.a_slope = s.a;
-  old_v_ = s.v;
+  if (with_energies) old_v_ = s.v;
   predict(f, l1, s);
   trial_forces(s.u, s.a, f.beta_h2);
   trial_ += line_.shape.tension;
@@ -157,6 +157,9 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
   correct(f, s);
   if (slope_known) s.a_slope = (s.a - s.a_slope) / f.h;
   s.h = f.h;
+  s.statistics.steps += 1;
+  s.statistics.add_attempt(*solved);
+  if (!with_energies) return true;
 
   // Energies; mv_ becomes M v. The loss at the mean velocity: with hht_alpha = 0 and no change of the slack
   // droppers the energies then balance to rounding.
@@ -172,9 +175,6 @@ bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState
   for (int j = 0; j < static_cast<int>(s.slack.size()); ++j)
     if (s.slack[j] != 0) strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
   s.elastic = 0.5 * strain;
-
-  s.statistics.steps += 1;
-  s.statistics.add_attempt(*solved);
   return true;
 }
 

@@ -33,7 +33,9 @@ class Hht {
   std::optional<LineState> at_rest(const Loads& loads);
   LineState at_rest_variation(const Loads& dloads, const VectorXd& slack);  // slack: of the state at rest
   // From the loads `l0`, at its begin, to `l1`. False, with `s` without meaning, when no set of slack droppers fits.
-  [[nodiscard]] bool step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s);
+  // The energies, and the damping forces that they are made of, may be left out: a third of the work.
+  [[nodiscard]] bool step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s,
+                          bool with_energies = true);
   // The same for a variation `d` of the state that the step led to `to` from; what is slack stays slack. Of
   // the energies it knows the kinetic one.
   void step_variation(const StepFactors& f, const Loads& dl1, const LineState& to, LineState& d);
