@@ -115,7 +115,7 @@ def line(pantograph: Fmu) -> None:
         for spans, taken in times.items():
             print(f"{spans:<11}  {1e6 * min(taken):>24.1f}   {1e6 * min(taken) / spans:>6.2f}")
         print("coupling     times faster than real time")
-        for scheme in ("explicit", "implicit"):
+        for scheme in ("explicit", "sequential", "parallel", "implicit"):
             system = System(catenary, pantograph, {}, [{}], Journey(speed), Coupling(scheme))
             runs = [run_line(system) for _ in range(ROUNDS)]
             print(f"{scheme:<11}  {runs[0].time[-1] / min(run.elapsed for run in runs):>27.1f}")
