@@ -17,9 +17,11 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
   calculated_.line.length = line_.mesh.length();
   calculated_.dropper.static_force_min = line_.shape.tension.size() > 0 ? line_.shape.tension.minCoeff() : 0;
   Passage placed[pantographs], expected[pantographs];
+  bool as_expected = true;
   for (int i = 0; i < pantographs; ++i) {
     const Passage& at = placed[i] = initial_passage(p, i, inputs.pantograph[i]);
     expected[i] = {at.position, at.speed, p.pantograph[i].static_force};
+    as_expected = as_expected && at.force == expected[i].force;
     if ((at.force != 0 || expected[i].force > 0) && !line_.mesh.contains(at.position))
       refuse("pantograph[%d].%s = %.10g m: must be within the line, 0 to %.10g m, as pantograph[%d].%s = %.10g N",
              i + 1, p.travel == Travel::Speed ? "start" : "position", at.position, calculated_.line.length, i + 1,
@@ -39,7 +41,7 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
     if (!foresight_.look(rest, state.foreseen, state.map))
       refuse("exchange.step = %g s: no set of slack droppers fits in the first step", p.exchange_step);
   }
-  state.line = at_rest(placed);
+  state.line = as_expected ? rest : at_rest(placed);
   if (p.exchange == Exchange::Parallel) state.known = state.line;
   begin(std::move(state), {inputs, 0});
 }
