@@ -3,8 +3,10 @@
 #include <utility>
 
 namespace zspring::catenary {
+namespace {
 
-Held going_on(const Line& line, const LineState& s, double length) {
+// Going on from `s` with its speeds and forces.
+Held going_on(const LineState& s, double length) {
   Held held;
   held.length = length;
   for (int i = 0; i < pantographs; ++i) {
@@ -16,14 +18,21 @@ Held going_on(const Line& line, const LineState& s, double length) {
   return held;
 }
 
+}  // namespace
+
 double height_under(const Line& line, const LineState& s, int i) {
   const Place place = line.mesh.at(s.passage[i].position);
-  return place.value.dot(place.of(s.u) + place.of(line.shape.height));
+  return place.value.dot(line.heights(s.u, place));
 }
 
 Foresight::Foresight(const Line& line, Hht& hht) : line_(line), hht_(hht) {
   for (int i = 0; i < pantographs; ++i)
     for (Variation* v : {&of_begin_[i], &of_end_[i]}) v->d = LineState::at_rest(line);
+}
+
+void Foresight::Variation::begin(bool used) {
+  is_used = used;
+  if (used) d.set_zero();
 }
 
 bool Foresight::is_there(const Passage& at, int i) const {
@@ -33,9 +42,7 @@ bool Foresight::is_there(const Passage& at, int i) const {
 bool Foresight::advance(const CommunicationStep& step, LineState& s, bool end_unknown) {
   for (int i = 0; i < pantographs; ++i) {
     of_begin_[i].is_used = false;
-    Variation& v = of_end_[i];
-    v.is_used = end_unknown && is_there(step.at(i, step.length()), i);
-    if (v.is_used) v.d.set_zero(), v.begin = 0, v.end = 1;
+    of_end_[i].begin(end_unknown && is_there(step.at(i, step.length()), i));
   }
   if (!through(step, s, true)) return false;
   for (int i = 0; i < pantographs; ++i) std::swap(of_begin_[i], of_end_[i]);
@@ -54,13 +61,8 @@ void Foresight::begin_at_rest(const LineState& s) {
 }
 
 bool Foresight::look(const LineState& s, double length, AffineMap maps[pantographs]) {
-  for (int i = 0; i < pantographs; ++i) {
-    of_begin_[i].begin = 1, of_begin_[i].end = 0;
-    Variation& v = of_end_[i];
-    v.is_used = is_there(s.passage[i], i);
-    if (v.is_used) v.d.set_zero(), v.begin = 0, v.end = 1;
-  }
-  const Held held = going_on(line_, s, length);
+  for (int i = 0; i < pantographs; ++i) of_end_[i].begin(is_there(s.passage[i], i));
+  const Held held = going_on(s, length);
   const CommunicationStep step(line_, s.passage, held);
   ahead_ = s;
   if (!through(step, ahead_, false)) return false;
@@ -83,14 +85,17 @@ bool Foresight::through(const CommunicationStep& step, LineState& s, bool with_e
     const double x = k / n;
     const Loads l1 = step.loads(x * length);
     if (!hht_.step(factors, l0, l1, s, with_energies)) return false;
-    for (int i = 0; i < pantographs; ++i)
-      for (Variation* v : {&of_begin_[i], &of_end_[i]}) {
-        if (!v->is_used) continue;
-        Loads change;
-        change.on[i].place = l1.on[i].place;
-        change.on[i].value = (v->begin + x * (v->end - v->begin)) * l1.on[i].place.value;
-        hht_.step_variation(factors, change, s, v->d);
-      }
+    const auto vary = [&](Variation& v, int i, double force) {
+      if (!v.is_used) return;
+      Loads change;
+      change.on[i].place = l1.on[i].place;
+      change.on[i].value = force * l1.on[i].place.value;
+      hht_.step_variation(factors, change, s, v.d);
+    };
+    for (int i = 0; i < pantographs; ++i) {
+      vary(of_begin_[i], i, 1 - x);
+      vary(of_end_[i], i, x);
+    }
     l0 = l1;
   }
   for (int i = 0; i < pantographs; ++i) s.passage[i] = step.at(i, length);

@@ -39,11 +39,12 @@ class Foresight {
   [[nodiscard]] bool look(const LineState& s, double length, AffineMap maps[pantographs]);
 
  private:
-  // How the state varies with the force on one pantograph, which varies from `begin` to `end` N over the step.
+  // How the state varies with the force on one pantograph at the begin or at the end of a step.
   struct Variation {
     LineState d;
-    double begin, end;
     bool is_used;
+
+    void begin(bool used);
   };
   bool through(const CommunicationStep& step, LineState& s, bool with_energies);
   bool is_there(const Passage& at, int i) const;
@@ -54,8 +55,6 @@ class Foresight {
   Variation of_begin_[pantographs], of_end_[pantographs];
 };
 
-// Going on from `s` with its speeds and forces.
-Held going_on(const Line& line, const LineState& s, double length);
 double height_under(const Line& line, const LineState& s, int i);  // m, of the wire over the datum
 
 }  // namespace zspring::catenary

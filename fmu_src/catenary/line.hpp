@@ -14,6 +14,8 @@ struct Line {
 
   void add_springs(const VectorXd& u, VectorXd& internal) const;  // supports, steady arms, pulling droppers
   SparseMatrix stiffness() const;                                 // K
+  // Of the contact wire at the nodes about a place, over the datum.
+  Eigen::Vector4d heights(const VectorXd& u, const Place& at) const { return at.of(u) + at.of(shape.height); }
 
   const Parameters& p;
   Mesh mesh;

@@ -37,7 +37,7 @@ struct View {
 
 // Of the contact wire at a place that moves: its height over the line's datum, its lift from the unloaded shape,
 // the rate of its height.
-Eigen::Vector4d heights(const View& x, const Place& at) { return at.of(x.s.u) + at.of(x.line.shape.height); }
+Eigen::Vector4d heights(const View& x, const Place& at) { return x.line.heights(x.s.u, at); }
 
 double height(const View& x, const Place& at) { return at.value.dot(heights(x, at)); }
 double uplift(const View& x, const Place& at) { return at.value.dot(at.of(x.s.u)); }
