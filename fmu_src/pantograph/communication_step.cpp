@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace zspring {
+namespace {
+
+constexpr auto nothing = [](const MechanicalState&, const MechanicalState&) {};  // to see of an internal step
+
+}  // namespace
 
 Discard unsolved(double time, const Convergence& end) {
   if (!std::isfinite(end.residual))
@@ -38,7 +43,6 @@ void meet_variation(const Hht& hht, const Boundary& b0, MechanicalState& s) {
 }
 
 std::optional<Discard> CommunicationStep::run(SimulationState& state) const {
-  const auto nothing = [](const MechanicalState&, const MechanicalState&) {};
   return gives_way() ? meet_wire(state) : run_along(position_input(p_.drive, held_.inputs), state, nothing);
 }
 
@@ -54,7 +58,6 @@ std::optional<Discard> CommunicationStep::meet_wire(SimulationState& state) cons
   const double compliance = wire.compliance.value, force = state.mechanical.contact_force;
   const double free = held_.inputs.wire_height.at(held_.length) + wire.compliance_previous.value * force;
   const double allowed = p_.solver.tolerance * compliance * (p_.static_force + p_.m1 * p_.gravity);  // m
-  const auto nothing = [](const MechanicalState&, const MechanicalState&) {};
   double slope = 1 + compliance * p_.contact.k, low = -HUGE_VAL, high = HUGE_VAL;
   double last_height = 0, last_residual = 0;
   Signal height;

@@ -47,9 +47,8 @@ ImposedMotion::ImposedMotion(const MotionState& start, const Signal& input, doub
 }
 
 double ImposedMotion::position(double tau) const {
-  const double x = tau / closing_;
   if (!input_.has_derivatives) return start_.position + tau / length_ * (input_.value - start_.position);
-  return input_.at(tau) + (1 - x) * (start_.position - input_.value);
+  return input_.at(tau) + (1 - tau / closing_) * (start_.position - input_.value);
 }
 
 void ImposedMotion::at(double tau, Boundary& b) const {
