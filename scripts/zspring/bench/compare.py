@@ -78,10 +78,11 @@ def compare_frf(
     unknown = [name for name in STATED if name not in conditions.parameters]
     used = fmu.used_parameters(given)
     assumed = ", ".join(f"{name} {with_unit(fmu.variables[name], used[name])}" for name in unknown)
-    remarks = [f"{source.path.name} does not say {' and '.join(unknown)} of the bench: {assumed} assumed"] * bool(
-        unknown
-    )
-    remarks += [warning] if (warning := sign_warning(curves)) else []
+    remarks = []
+    if unknown:
+        remarks.append(f"{source.path.name} does not say {' and '.join(unknown)} of the bench: {assumed} assumed")
+    if warning := sign_warning(curves):
+        remarks.append(warning)
     with fmu.instances(min(jobs, len(curves))) as instances:
         model = BenchModel(instances, swept, stop)
         try:
