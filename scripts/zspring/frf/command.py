@@ -126,7 +126,7 @@ def frf(
     Without options: the standard figure. Writes frf.csv and frf.png.
 
     Resonances and antiresonances are measured between these frequencies until they are known, approached as the
-    sweep does, some points at half the internal step: table resonances.csv, further points refined.csv.
+    sweep does, some points at half the internal step: table resonances.csv, further points frf-refined.csv.
 
     Ctrl-C keeps all finished points, and the same command goes on from there; with other settings it needs
     another folder.
