@@ -84,7 +84,7 @@ class Fmu:
         with ExitStack() as stack:
             instances = []
             for number in range(count):
-                instance = Instance(self, f"zspring{number}", self.library)
+                instance = Instance(self, f"zspring{number}", self.binary)
                 stack.callback(instance.free)
                 instances.append(instance)
             yield instances
@@ -96,7 +96,7 @@ class Fmu:
             return instance.used_parameters()
 
     @property
-    def library(self) -> Path:
+    def binary(self) -> Path:
         """The shared library for this platform, in the folder of FMI 2.0 or of 2.0.5.
 
         Raises ZSpringError where there is none.

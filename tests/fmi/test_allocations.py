@@ -22,7 +22,7 @@ def count(model: str, integers: dict[str, int], reals: dict[str, float]) -> tupl
             for name, value in values.items()
         ]
         program, guid = probe_folder() / "count_allocations", fmu.description.guid
-        command = [program, fmu.library, guid, "0.011", "500", *settings]
+        command = [program, fmu.binary, guid, "0.011", "500", *settings]
         done = subprocess.run(command, check=True, capture_output=True, text=True)
     in_steps, in_instantiate = map(int, done.stdout.split())
     return in_steps, in_instantiate

@@ -23,7 +23,7 @@ def fuzz(model: str, *arguments: object, under: Sequence[str] = ()) -> dict[str,
     """
     command = [*under, str(probe_folder() / f"fuzz_{model}"), *map(str, arguments)]
     with Fmu(installed_fmu(model)) as fmu:
-        path = os.pathsep.join(filter(None, [str(fmu.library.parent), os.environ.get(SEARCH_PATH)]))
+        path = os.pathsep.join(filter(None, [str(fmu.binary.parent), os.environ.get(SEARCH_PATH)]))
         done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, SEARCH_PATH: path})
     assert done.returncode == 0, done.stderr[-2000:]
     return {name: int(count) for name, count in re.findall(r"(\w+) (\d+)", done.stdout)}

@@ -39,7 +39,7 @@ def command(fmu: Fmu, mode: str, count: int, also: Mapping[str, int] = {}) -> li
     settings += [f"o{vr(name)}" for name in outputs]
     return [
         probe_folder() / "endurance",
-        fmu.library,
+        fmu.binary,
         fmu.description.guid,
         mode,
         str(count),
