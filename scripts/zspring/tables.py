@@ -11,7 +11,8 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TextIO
@@ -195,6 +196,18 @@ class TableFile:
         return repr(float(cell)) if self._digits is None else f"{cell:.{self._digits}g}"
 
 
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """A file beside `path` to write, which takes its place at the end; an error leaves what was there."""
+    unfinished = path.with_name(f"{path.name}.new")
+    try:
+        yield unfinished
+        unfinished.replace(path)
+    except BaseException:
+        unfinished.unlink(missing_ok=True)
+        raise
+
+
 def write_table(
     path: Path,
     head: Mapping[str, str],
@@ -203,13 +216,12 @@ def write_table(
     digits: int | None = 12,
 ) -> Path:
     """A whole table; see TableFile. The file is complete or as it was before."""
-    unfinished = path.with_name(f"{path.name}.new")
-    table = TableFile(unfinished, columns, digits)
-    table.begin(head)
-    with table:
-        for row in rows:
-            table.write(row)
-    unfinished.replace(path)
+    with replaced(path) as unfinished:
+        table = TableFile(unfinished, columns, digits)
+        table.begin(head)
+        with table:
+            for row in rows:
+                table.write(row)
     return path
 
 

@@ -21,7 +21,7 @@ from ..line.schemes import Coupling
 from ..line.statistics import low_pass, statistics
 from ..line.system import System
 from ..records import keep_others
-from ..tables import read_rows, write_table
+from ..tables import read_rows, replaced, write_table
 from ..variables import Value
 from .compare import STEPS, compare_steps, compared, comparison_table
 from .plot import comparison_figure, line_figure
@@ -165,13 +165,10 @@ def compare_and_write(system: System, folder: Path, suffix: str, what: str = "")
 
 def export_ssp(system: System, path: Path) -> None:
     """Write the archive of SSP 1.0. Raises ZSpringError where one of another system is there."""
-    unfinished = path.with_name(f"{path.name}.new")
-    with LineRun(system) as run:
+    with replaced(path) as unfinished, LineRun(system) as run:
         write_ssp(run, unfinished)
-    if path.exists() and _members(path) != _members(unfinished):
-        unfinished.unlink()
-        raise ZSpringError(f"{path} is of other settings: remove it, or name another file")
-    unfinished.replace(path)
+        if path.exists() and _members(path) != _members(unfinished):
+            raise ZSpringError(f"{path} is of other settings: remove it, or name another file")
     print("written:", path)
 
 

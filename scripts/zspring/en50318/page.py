@@ -21,6 +21,7 @@ from matplotlib.figure import Figure
 
 from ..figures import save
 from ..records import keep_others
+from ..tables import replaced
 
 GOOD, BAD, WORDS = "good", "bad", "words"
 
@@ -93,9 +94,8 @@ def write_report(path: Path, title: str, chapters: Sequence[Chapter], settings: 
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     path.parent.mkdir(parents=True, exist_ok=True)
     page = environment.from_string(template).render(title=title, chapters=chapters, settings=json.dumps(settings))
-    unfinished = path.with_name(f"{path.name}.new")
-    unfinished.write_text(page, encoding="utf-8")
-    unfinished.replace(path)
+    with replaced(path) as unfinished:
+        unfinished.write_text(page, encoding="utf-8")
     pictures = [block for chapter in chapters for block in chapter.blocks if isinstance(block, Picture)]
     for picture in pictures:
         save(picture.figure, path.parent / picture.file)
