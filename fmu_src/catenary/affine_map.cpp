@@ -1,5 +1,8 @@
 #include "affine_map.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace zspring::catenary {
@@ -25,80 +28,187 @@ double height_under(const Line& line, const LineState& s, int i) {
   return place.value.dot(line.heights(s.u, place));
 }
 
-Foresight::Foresight(const Line& line, Hht& hht) : line_(line), hht_(hht) {
-  for (int i = 0; i < pantographs; ++i)
-    for (Variation* v : {&of_begin_[i], &of_end_[i]}) v->d = LineState::at_rest(line);
+Foresight::Foresight(const Line& line, Hht& hht)
+    : line_(line),
+      hht_(hht),
+      ahead_(LineState::at_rest(line)),
+      between_(ahead_),
+      jumped_(ahead_),
+      last_(line),
+      begin_(line),
+      end_(line) {}
+
+void Foresight::OfForce::begin(bool used) {
+  clear();
+  is_used = used;
+  least = -std::numeric_limits<double>::infinity();
+  most = -least;
 }
 
-void Foresight::Variation::begin(bool used) {
-  is_used = used;
-  if (used) d.set_zero();
+bool Foresight::OfForce::allows(double change, double share) const {
+  return is_used ? change >= share * least && change <= share * most : change == 0;
+}
+
+int Foresight::OfForces::count() const {
+  return static_cast<int>(std::count_if(std::begin(on), std::end(on), [](const OfForce& v) { return v.is_used; }));
+}
+
+// `share` of what each may do alone, so that they may all do it at once.
+bool Foresight::OfForces::allow(const double change[pantographs], double share) const {
+  for (int i = 0; i < pantographs; ++i)
+    if (!on[i].allows(change[i], share)) return false;
+  return true;
+}
+
+void Foresight::OfForces::add_to(LineState& s, const double change[pantographs]) const {
+  for (int i = 0; i < pantographs; ++i)
+    if (change[i] != 0) on[i].add_to(s, change[i]);
 }
 
 bool Foresight::is_there(const Passage& at, int i) const {
   return at.force != 0 || at.speed != 0 || line_.p.pantograph[i].static_force != 0;
 }
 
-bool Foresight::advance(const CommunicationStep& step, LineState& s, bool end_unknown) {
-  for (int i = 0; i < pantographs; ++i) {
-    of_begin_[i].is_used = false;
-    of_end_[i].begin(end_unknown && is_there(step.at(i, step.length()), i));
-  }
-  if (!through(step, s, true)) return false;
-  for (int i = 0; i < pantographs; ++i) std::swap(of_begin_[i], of_end_[i]);
-  return true;
+bool Foresight::advance(const CommunicationStep& step, const LineState& from, LineState& to, bool end_varies) {
+  if (end_varies)
+    for (int i = 0; i < pantographs; ++i) end_.on[i].begin(is_there(step.at(i, step.length()), i));
+  return through(step, from, to, line_.p.solver.energies, nullptr, end_varies ? &end_ : nullptr);
 }
+
+void Foresight::begin_known() {
+  for (OfForce& v : last_.on) v.begin(false);
+}
+
+void Foresight::begin_unknown() { std::swap(last_, end_); }
 
 void Foresight::begin_at_rest(const LineState& s) {
   for (int i = 0; i < pantographs; ++i) {
-    of_begin_[i].is_used = is_there(s.passage[i], i);
-    if (!of_begin_[i].is_used) continue;
+    OfForce& v = last_.on[i];
+    v.begin(is_there(s.passage[i], i));
+    if (!v.is_used) continue;
     Loads unit;
     unit.on[i].place = line_.mesh.at(s.passage[i].position);
     unit.on[i].value = unit.on[i].place.value;
-    of_begin_[i].d = hht_.at_rest_variation(unit, s.slack);
+    static_cast<Variation&>(v) = hht_.at_rest_variation(unit, s.slack);
+    bound(s, v);
   }
 }
 
 bool Foresight::look(const LineState& s, double length, AffineMap maps[pantographs]) {
-  for (int i = 0; i < pantographs; ++i) of_end_[i].begin(is_there(s.passage[i], i));
+  for (int i = 0; i < pantographs; ++i) {
+    begin_.on[i].begin(last_.on[i].is_used);
+    begin_.on[i].take_over(last_.on[i]);
+    end_.on[i].begin(is_there(s.passage[i], i));
+  }
   const Held held = going_on(s, length);
   const CommunicationStep step(line_, s.passage, held);
-  ahead_ = s;
-  if (!through(step, ahead_, false)) return false;
+  forget();
+  if (!through(step, s, ahead_, false, &begin_, &end_)) return false;
+  foreseen_ = length;
   for (int i = 0; i < pantographs; ++i) {
     const Place place = line_.mesh.at(ahead_.passage[i].position);
-    const auto compliance = [&](const Variation& v) { return v.is_used ? place.value.dot(place.of(v.d.u)) : 0; };
-    maps[i].compliance = compliance(of_end_[i]);
-    maps[i].previous = compliance(of_begin_[i]);
+    const auto compliance = [&](const OfForce& v) { return v.is_used ? place.value.dot(place.of(v.d.u)) : 0; };
+    maps[i].compliance = compliance(end_.on[i]);
+    maps[i].previous = compliance(begin_.on[i]);
     maps[i].free = height_under(line_, ahead_, i) - (maps[i].compliance + maps[i].previous) * s.passage[i].force;
   }
   return true;
 }
 
-bool Foresight::through(const CommunicationStep& step, LineState& s, bool with_energies) {
-  const double n = static_cast<double>(step.internal_steps()), length = step.length();
+// The energies of several internal steps are not linear in the forces.
+bool Foresight::can_superpose(const CommunicationStep& step) const {
+  return step.internal_steps() == 1 || !line_.p.solver.energies;
+}
+
+bool Foresight::foresaw(const CommunicationStep& step, const ForceChange& change) const {
+  constexpr double close = 1e-11, near = 1e-10;  // of the length, and m: hosts add up times and places
+  if (!can_superpose(step) || !(std::abs(step.length() - foreseen_) <= close * foreseen_)) return false;
+  for (int i = 0; i < pantographs; ++i) {
+    if (!step.is_straight(i)) return false;
+    if (end_.on[i].is_used && !(std::abs(step.at(i, step.length()).position - ahead_.passage[i].position) <= near))
+      return false;
+  }
+  const double share = 1.0 / std::max(1, begin_.count() + end_.count());
+  return begin_.allow(change.begin, share) && end_.allow(change.end, share);
+}
+
+void Foresight::take(const CommunicationStep& step, const LineState& from, const ForceChange& change, LineState& to) {
+  std::swap(to, ahead_);
+  forget();
+  begin_.add_to(to, change.begin);
+  end_.add_to(to, change.end);
+  finish(step, from, to);
+}
+
+bool Foresight::can_correct(const CommunicationStep& step, const ForceChange& change) const {
+  return can_superpose(step) && last_.allow(change.end, 1.0 / std::max(1, last_.count()));
+}
+
+void Foresight::correct(const CommunicationStep& step, const LineState& from, const ForceChange& change,
+                        LineState& to) {
+  last_.add_to(to, change.end);
+  finish(step, from, to);
+}
+
+void Foresight::finish(const CommunicationStep& step, const LineState& from, LineState& to) {
+  for (int i = 0; i < pantographs; ++i) to.passage[i] = step.at(i, step.length());
+  to.slack = to.slack.cwiseMax(0.0);  // what rounding left
+  if (line_.p.solver.energies)
+    hht_.account(hht_.factors(step.length()), step.loads(0), step.loads(step.length()), from, to);
+}
+
+// Of what happens at each internal step the bounds hold what is allowed in all.
+void Foresight::bound(const LineState& s, OfForce& v) const {
+  constexpr double tolerance = 1e-9;  // N, m: as exact as the droppers are told slack or taut
+  const Range droppers = droppers_at(line_.mesh, v.on);
+  for (int j = droppers.begin; j < droppers.end; ++j) {
+    const bool is_slack = s.slack[j] > 0;
+    const double stiffness = line_.shape.stiffness[j];
+    const double room =
+        tolerance + (is_slack ? s.slack[j] : line_.shape.tension[j] + stiffness * stretch(line_.mesh, s.u, j));
+    const double change = is_slack ? v.d.slack[j] : stiffness * stretch(line_.mesh, v.d.u, j);
+    if (change > 0) v.least = std::max(v.least, -std::max(room, 0.0) / change);
+    if (change < 0) v.most = std::min(v.most, -std::max(room, 0.0) / change);
+  }
+}
+
+bool Foresight::through(const CommunicationStep& step, const LineState& start, LineState& to, bool with_energies,
+                        OfForces* begin, OfForces* end) {
+  const Count steps = step.internal_steps();
+  const double n = static_cast<double>(steps), length = step.length();
   const StepFactors& factors = hht_.factors(length / n);
   Loads l0 = step.loads(0);
-  hht_.jump(loads_at(line_.mesh, s.passage), l0, s);
-  for (Count k = 1; k <= step.internal_steps(); ++k) {
+  const Loads before = loads_at(line_.mesh, start.passage);
+  const LineState* from = &start;
+  if (!(before == l0)) {
+    jumped_ = start;
+    hht_.jump(before, l0, jumped_);
+    from = &jumped_;
+  }
+  for (Count k = 1; k <= steps; ++k) {
     const double x = k / n;
     const Loads l1 = step.loads(x * length);
-    if (!hht_.step(factors, l0, l1, s, with_energies)) return false;
-    const auto vary = [&](Variation& v, int i, double force) {
-      if (!v.is_used) return;
-      Loads change;
-      change.on[i].place = l1.on[i].place;
-      change.on[i].value = force * l1.on[i].place.value;
-      hht_.step_variation(factors, change, s, v.d);
+    LineState& next = (steps - k) % 2 == 0 ? to : between_;  // the last one is `to`
+    if (!hht_.step(factors, l1, *from, next)) return false;
+    if (with_energies) hht_.account(factors, l0, l1, *from, next);
+    const auto vary = [&](OfForces* all, double force) {
+      if (!all) return;
+      for (int i = 0; i < pantographs; ++i) {
+        OfForce& v = all->on[i];
+        if (!v.is_used) continue;
+        Loads change;
+        change.on[i].place = l1.on[i].place;
+        change.on[i].value = force * l1.on[i].place.value;
+        hht_.step_variation(factors, change, next, v);
+        bound(next, v);
+      }
     };
-    for (int i = 0; i < pantographs; ++i) {
-      vary(of_begin_[i], i, 1 - x);
-      vary(of_end_[i], i, x);
-    }
+    vary(begin, 1 - x);
+    vary(end, x);
     l0 = l1;
+    from = &next;
   }
-  for (int i = 0; i < pantographs; ++i) s.passage[i] = step.at(i, length);
+  for (int i = 0; i < pantographs; ++i) to.passage[i] = step.at(i, length);
   return true;
 }
 

@@ -1,13 +1,13 @@
-// Cholesky factor of a symmetric matrix that is block tridiagonal with a block for each station.
+// Cholesky factor L D L' of a symmetric matrix that is block tridiagonal with a block for each station.
 //
-// Eigen's sparse LDLT gives the same in three times the time: the wires couple each station to its neighbours
+// Eigen's sparse LDLT gives the same in several times the time: the wires couple each station to its neighbours
 // alone, and blocks of 4 x 4 go through vector registers without indices.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "sparse.hpp"
+#include "sweeps.hpp"
 
 namespace zspring::catenary {
 
@@ -16,15 +16,19 @@ class BlockCholesky {
   // Throws Refusal where the matrix is not positive definite.
   explicit BlockCholesky(const SparseMatrix& matrix);
 
-  void solve(VectorXd& x) const;  // in place, without allocation
+  // In place, without allocation.
+  void solve(VectorXd& x) const { sweeps::solve(factor(), x.data()); }
+  // The same where x is zero outside of `on`; returns where the solution is not below rounding, nor then zero.
+  Range solve(VectorXd& x, Range on) const { return sweeps::solve_locally(factor(), on, x.data()); }
 
  private:
-  struct Block {
-    Eigen::Matrix4d inverse;   // L_ii^-1
-    Eigen::Matrix4d forward;   // L_ii^-1 L_i,i-1
-    Eigen::Matrix4d backward;  // L_ii^-T L_i+1,i^T
-  };
-  std::vector<Block> blocks_;
+  sweeps::Factor factor() const {
+    return {inverse_.data(), forward_.data(), backward_.data(), static_cast<int>(inverse_.size())};
+  }
+
+  std::vector<FactorBlock> inverse_;   // D_i^-1
+  std::vector<FactorBlock> forward_;   // L_i,i-1
+  std::vector<FactorBlock> backward_;  // L_i+1,i'
 };
 
 }  // namespace zspring::catenary

@@ -45,6 +45,12 @@ class CommunicationStep {
     return {from.position + speed.integral(tau), speed.at(tau), force};
   }
 
+  // The force and the pantograph's motion go from where they were to where they are told to, without a jump.
+  bool is_straight(int i) const {
+    const PantographInputs& u = held_.inputs.pantograph[i];
+    return !u.force.has_derivatives && !u.speed.has_derivatives && !u.position.has_derivatives;
+  }
+
   Loads loads(double tau) const {
     const Passage here[pantographs] = {at(0, tau), at(1, tau)};
     return loads_at(line_.mesh, here);

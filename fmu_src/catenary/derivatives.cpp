@@ -11,11 +11,12 @@ Outputs Simulation::output_rates() {
   LineState d;
   d.u = s.v;
   d.v = s.a;
-  const Loads loads = loads_at(line_.mesh, s.passage);
-  d.kinetic = s.v.dot(line_.matrices.mass * s.a);
-  d.dissipated = s.v.dot(s.damping);
-  d.work = loads.dot(s.v);
-  d.elastic = s.v.dot(s.internal) - d.dissipated + d.work;
+  if (line_.p.solver.energies) {
+    d.kinetic = hht_.kinetic_change(s, s.a);
+    d.dissipated = s.loss_power;
+    d.work = loads_at(line_.mesh, s.passage).dot(s.v);
+    d.elastic = s.v.dot(s.internal) - d.dissipated + d.work;
+  }
   const CommunicationStep step(line_, before_.line.passage, held_);
   for (int i = 0; i < pantographs; ++i) {
     d.passage[i].position = s.passage[i].speed;
@@ -39,9 +40,9 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
       dloads.on[i].value =
           changed[i].force * place.value + state_.line.passage[i].force * changed[i].position * place.slope;
     }
-    LineState d = hht_.at_rest_variation(dloads, state_.line.slack);
+    LineState d = hht_.at_rest_variation(dloads, state_.line.slack).d;
     std::copy_n(changed, pantographs, d.passage);
-    d.elastic = loads_at(line_.mesh, state_.line.passage).dot(d.u);
+    if (line_.p.solver.energies) d.elastic = loads_at(line_.mesh, state_.line.passage).dot(d.u);
     return change(d);
   }
   // Only values vary; whether they are targets does not.
@@ -55,27 +56,31 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
   const double n = static_cast<double>(step.internal_steps());
   const StepFactors& factors = hht_.factors(length / n);
 
-  LineState d = LineState::at_rest(line_);
+  Variation v = Variation::of_nothing(line_);
+  LineState& d = v.d;
   Loads l0 = step.loads(0), dl0 = step.loads_change(change_of, 0);
   Loads none = dl0;
   for (PointLoad& l : none.on) l.value.setZero();
-  hht_.jump(none, dl0, d);
+  if (!(none == dl0)) {
+    hht_.jump(none, dl0, d);
+    v.on = {0, line_.mesh.stations()};
+  }
   LineState now, next;  // the steps before the last are done again
   if (n > 1) {
-    now = before_.line;
+    now = next = before_.line;
     hht_.jump(loads_at(line_.mesh, before_.line.passage), l0, now);
   }
   const LineState& from = n > 1 ? now : before_.line;
   for (Count k = 1; k <= step.internal_steps(); ++k) {
     const Loads l1 = step.loads(k / n * length), dl1 = step.loads_change(change_of, k / n * length);
     if (k < n) {
-      next = now;
-      if (!hht_.step(factors, l0, l1, next)) break;  // not reached: it was solved before
+      if (!hht_.step(factors, l1, now, next)) break;  // not reached: it was solved before
+      hht_.account(factors, l0, l1, now, next);
     }
     const LineState& to = k < n ? next : state_.line;
     const VectorXd old_dv = d.v;
     d.work -= 0.5 * (dl0.dot(from.u) + dl1.dot(from.u) + l0.dot(d.u) + l1.dot(d.u));
-    hht_.step_variation(factors, dl1, to, d);
+    hht_.step_variation(factors, dl1, to, v);
     d.work += 0.5 * (dl0.dot(to.u) + dl1.dot(to.u) + l0.dot(d.u) + l1.dot(d.u));
     d.dissipated += 0.5 * factors.h * (old_dv.dot(from.damping + to.damping) + d.v.dot(from.damping + to.damping));
     d.elastic = d.u.dot(to.internal) - d.u.dot(to.damping) + l1.dot(d.u);
@@ -83,6 +88,8 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     l0 = l1;
     dl0 = dl1;
   }
+  d.kinetic = hht_.kinetic_change(state_.line, d.v);
+  if (!line_.p.solver.energies) d.kinetic = d.elastic = d.dissipated = d.work = 0;
   for (int i = 0; i < pantographs; ++i) d.passage[i] = change_of.at(i, length);
   return change(d);
 }

@@ -1,51 +1,62 @@
 #include "droppers.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <utility>
 
 namespace zspring::catenary {
 
 DropperResponse::DropperResponse(const Mesh& mesh, const BlockCholesky& factor, double scale) {
-  const int n = static_cast<int>(mesh.droppers.size());
-  compliance_.resize(n, n);
-  VectorXd x(mesh.dofs());
-  for (int j = 0; j < n; ++j) {
-    x.setZero();
+  VectorXd x = VectorXd::Zero(mesh.dofs());
+  for (int j = 0; j < static_cast<int>(mesh.droppers.size()); ++j) {
     add_tension(mesh, j, 1, x);
-    factor.solve(x);
-    for (int i = 0; i < n; ++i) compliance_(i, j) = scale * stretch(mesh, x, i);
-    const double negligible = 1e-2 * std::numeric_limits<double>::epsilon() * x.cwiseAbs().maxCoeff();
-    Eigen::Index begin = 0, end = x.size();
-    while (begin < end && std::abs(x[begin]) < negligible) ++begin;
-    while (end > begin && std::abs(x[end - 1]) < negligible) --end;
-    columns_.push_back({begin, x.segment(begin, end - begin)});
+    const int station = mesh.droppers[j];
+    const Range on = factor.solve(x, {station, station + 1});
+    Column c{on, x.segment(4 * on.begin, 4 * (on.end - on.begin)), droppers_at(mesh, on), {}};
+    c.compliances.resize(c.droppers.end - c.droppers.begin);
+    for (int i = c.droppers.begin; i < c.droppers.end; ++i)
+      c.compliances[i - c.droppers.begin] = scale * stretch(mesh, x, i);
+    x.segment(4 * on.begin, c.values.size()).setZero();
+    columns_.push_back(std::move(c));
   }
 }
 
-void DropperResponse::add(int dropper, double factor, VectorXd& x) const {
+void DropperResponse::relieve(int j, double pull, const VectorXd& stiffness, VectorXd& forces) const {
+  const Column& c = columns_[j];
+  const auto in = [&](auto& x) { return x.segment(c.droppers.begin, c.compliances.size()).array(); };
+  in(forces) -= pull * in(stiffness) * c.compliances.array();
+  forces[j] += pull;
+}
+
+double DropperResponse::compliance(int i, int j) const {
+  const Column& c = columns_[j];
+  return i >= c.droppers.begin && i < c.droppers.end ? c.compliances[i - c.droppers.begin] : 0;
+}
+
+Range DropperResponse::add(int dropper, double factor, VectorXd& x) const {
   const Column& c = columns_[dropper];
-  x.segment(c.begin, c.values.size()) += factor * c.values;
+  x.segment(4 * c.on.begin, c.values.size()) += factor * c.values;
+  return c.on;
 }
 
 Slackening::Slackening(const VectorXd& stiffness)
     : stiffness_(stiffness),
       active_(stiffness.size()),
-      matrix_(stiffness.size(), stiffness.size()),
+      matrix_(stiffness.size() * stiffness.size()),
       right_(stiffness.size()),
       force_(stiffness.size()),
       is_active_(static_cast<size_t>(stiffness.size())) {}
 
 // Of f = trial + (k - k compliance k) s, the equations f = 0 of the active droppers.
-void Slackening::solve_active(const VectorXd& trial, const MatrixXd& compliance, VectorXd& s) {
+void Slackening::solve_active(const VectorXd& trial, const DropperResponse& response, VectorXd& s) {
+  Eigen::Map<MatrixXd> matrix(matrix_.data(), count_, count_);
   for (Eigen::Index a = 0; a < count_; ++a) {
     const int i = active_[a];
     right_[a] = -trial[i];
     for (Eigen::Index b = 0; b < count_; ++b) {
       const int j = active_[b];
-      matrix_(a, b) = (i == j ? stiffness_[i] : 0) - stiffness_[i] * compliance(i, j) * stiffness_[j];
+      matrix(a, b) = (i == j ? stiffness_[i] : 0) - stiffness_[i] * response.compliance(i, j) * stiffness_[j];
     }
   }
-  Eigen::Ref<MatrixXd> matrix = matrix_.topLeftCorner(count_, count_);
   const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(matrix);
   auto solution = right_.head(count_);
   factor.solveInPlace(solution);
@@ -53,7 +64,7 @@ void Slackening::solve_active(const VectorXd& trial, const MatrixXd& compliance,
   for (Eigen::Index a = 0; a < count_; ++a) s[active_[a]] = solution[a];
 }
 
-std::optional<int> Slackening::solve(const VectorXd& trial, const MatrixXd& compliance, VectorXd& s) {
+std::optional<int> Slackening::solve(const VectorXd& trial, const DropperResponse& response, VectorXd& s) {
   const Eigen::Index n = trial.size();
   const double tolerance = 1e-9 * std::max(1.0, n > 0 ? trial.cwiseAbs().maxCoeff() : 0);  // N
   for (Eigen::Index i = 0; i < n; ++i) is_active_[i] = s[i] > 0;
@@ -65,15 +76,13 @@ std::optional<int> Slackening::solve(const VectorXd& trial, const MatrixXd& comp
     for (Eigen::Index i = 0; i < n; ++i)
       if (is_active_[i]) active_[count_++] = static_cast<int>(i);
     if (count_ > 0)
-      solve_active(trial, compliance, s);
+      solve_active(trial, response, s);
     else
       s.setZero();
     force_ = trial;
     for (Eigen::Index a = 0; a < count_; ++a) {
       const int j = active_[a];
-      const double pull = stiffness_[j] * s[j];
-      force_.array() -= pull * stiffness_.array() * compliance.col(j).array();
-      force_[j] += pull;
+      response.relieve(j, stiffness_[j] * s[j], stiffness_, force_);
     }
     Eigen::Index wrong = 0, last_wrong = 0;
     const auto is_wrong = [&](Eigen::Index i) {
@@ -100,12 +109,13 @@ std::optional<int> Slackening::solve(const VectorXd& trial, const MatrixXd& comp
   return std::nullopt;
 }
 
-void Slackening::solve_variation(const VectorXd& trial, const MatrixXd& compliance, const VectorXd& s, VectorXd& ds) {
+void Slackening::solve_variation(const VectorXd& trial, const DropperResponse& response, const VectorXd& s,
+                                 VectorXd& ds) {
   count_ = 0;
   for (Eigen::Index i = 0; i < s.size(); ++i)
     if (s[i] > 0) active_[count_++] = static_cast<int>(i);
   ds.setZero();
-  if (count_ > 0) solve_active(trial, compliance, ds);
+  if (count_ > 0) solve_active(trial, response, ds);
 }
 
 }  // namespace zspring::catenary

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <optional>
 
 #include "block_cholesky.hpp"
@@ -16,21 +17,33 @@
 
 namespace zspring::catenary {
 
+// The droppers at some stations, and all of them.
+inline Range droppers_at(const Mesh& mesh, Range on) {
+  const auto index = [&](int station) {
+    return static_cast<int>(std::lower_bound(mesh.droppers.begin(), mesh.droppers.end(), station) -
+                            mesh.droppers.begin());
+  };
+  return {index(on.begin), index(on.end)};
+}
+
 // How a factorised matrix A answers to unit forces that pull a dropper's ends together, columns of A^-1 B.
 class DropperResponse {
  public:
   DropperResponse(const Mesh& mesh, const BlockCholesky& factor, double scale);
 
-  const MatrixXd& compliance() const { return compliance_; }  // scale B' A^-1 B, m/N
-  void add(int dropper, double factor, VectorXd& x) const;    // x += factor A^-1 b
+  // Adds to `forces`, N, of the droppers what a pull of the dropper j by `pull` N does to them, each of `stiffness`.
+  void relieve(int j, double pull, const VectorXd& stiffness, VectorXd& forces) const;
+  double compliance(int i, int j) const;                     // scale b_i' A^-1 b_j, m/N
+  Range add(int dropper, double factor, VectorXd& x) const;  // x += factor A^-1 b; returns where
 
  private:
   struct Column {
-    Eigen::Index begin;  // outside of begin .. begin + size it is below rounding
+    Range on;  // outside of them it is below rounding
     VectorXd values;
+    Range droppers;        // there
+    VectorXd compliances;  // of these
   };
   std::vector<Column> columns_;
-  MatrixXd compliance_;
 };
 
 inline double stretch(const Mesh& mesh, const VectorXd& u, int dropper) {
@@ -50,18 +63,17 @@ class Slackening {
 
   // From `trial` N, the forces with s = 0, to the slack s, m; begins with what is slack in s. Returns the number
   // of linear systems solved; none when it found no solution, which rounding alone could cause.
-  std::optional<int> solve(const VectorXd& trial, const MatrixXd& compliance, VectorXd& s);
+  std::optional<int> solve(const VectorXd& trial, const DropperResponse& response, VectorXd& s);
   // Its derivative: the same droppers stay slack, with variations in place of values.
-  void solve_variation(const VectorXd& trial, const MatrixXd& compliance, const VectorXd& s, VectorXd& ds);
+  void solve_variation(const VectorXd& trial, const DropperResponse& response, const VectorXd& s, VectorXd& ds);
 
  private:
-  void solve_active(const VectorXd& trial, const MatrixXd& compliance, VectorXd& s);
+  void solve_active(const VectorXd& trial, const DropperResponse& response, VectorXd& s);
 
   const VectorXd stiffness_;
   Eigen::VectorXi active_;  // indices of what is slack, the first count_
   Eigen::Index count_ = 0;
-  MatrixXd matrix_;  // workspace
-  VectorXd right_, force_;
+  VectorXd matrix_, right_, force_;  // workspace
   std::vector<char> is_active_;
 };
 

@@ -33,10 +33,6 @@ Hht::Hht(const Line& line)
       mass_factor_(line.matrices.mass),
       slackening_(line.shape.stiffness),
       x_(line.mesh.dofs()),
-      y_(line.mesh.dofs()),
-      mv_(line.mesh.dofs()),
-      ma_(line.mesh.dofs()),
-      old_v_(line.mesh.dofs()),
       trial_(line.shape.stiffness.size()) {
   factors(line.p.solver.step);
 }
@@ -58,10 +54,12 @@ void Hht::trial_forces(const VectorXd& u, const VectorXd& a, double beta_h2) {
     trial_[j] = shape.stiffness[j] * (stretch(line_.mesh, u, j) + beta_h2 * stretch(line_.mesh, a, j));
 }
 
-// What the slack droppers do to x, in units of `factor` over the response's.
-void Hht::add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const {
+// What the slack droppers do to x, in units of `factor` over the response's, and where.
+Range Hht::add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const {
+  Range on{0, 0};
   for (int j = 0; j < static_cast<int>(slack.size()); ++j)
-    if (slack[j] != 0) response.add(j, -factor * line_.shape.stiffness[j] * slack[j], x);
+    if (slack[j] != 0) on = on.with(response.add(j, -factor * line_.shape.stiffness[j] * slack[j], x));
+  return on;
 }
 
 BlockCholesky Hht::static_factor() const {
@@ -85,25 +83,26 @@ std::optional<LineState> Hht::at_rest(const Loads& loads) {
   trial_ += line_.shape.tension;
   if (trial_.size() > 0 && trial_.minCoeff() < 0) {
     const DropperResponse response(line_.mesh, factor, 1);
-    if (!slackening_.solve(trial_, response.compliance(), s.slack)) return std::nullopt;
+    if (!slackening_.solve(trial_, response, s.slack)) return std::nullopt;
     add_slack(response, 1, s.slack, s.u);
   }
+  if (!line_.p.solver.energies) return s;
   wires_.multiply(s.u, x_);
-  line_.add_springs(s.u, x_);
+  line_.add_springs(1, s.u, x_);
   s.elastic = 0.5 * (s.u.dot(x_) - s.slack.cwiseAbs2().dot(line_.shape.stiffness));
   return s;
 }
 
-LineState Hht::at_rest_variation(const Loads& dloads, const VectorXd& slack) {
+Variation Hht::at_rest_variation(const Loads& dloads, const VectorXd& slack) {
   const BlockCholesky factor = static_factor();
-  LineState d = at_rest_if_taut(factor, dloads);
+  Variation v{at_rest_if_taut(factor, dloads), all()};
   if (slack.size() > 0 && slack.maxCoeff() > 0) {
     const DropperResponse response(line_.mesh, factor, 1);
-    trial_forces(d.u, d.a, 0);
-    slackening_.solve_variation(trial_, response.compliance(), slack, d.slack);
-    add_slack(response, 1, d.slack, d.u);
+    trial_forces(v.d.u, v.d.a, 0);
+    slackening_.solve_variation(trial_, response, slack, v.d.slack);
+    add_slack(response, 1, v.d.slack, v.d.u);
   }
-  return d;
+  return v;
 }
 
 void Hht::jump(const Loads& l0, const Loads& l1, LineState& s) {
@@ -116,82 +115,92 @@ void Hht::jump(const Loads& l0, const Loads& l1, LineState& s) {
   s.a += x_;
 }
 
-// Leaves in s.u, s.v the predictors, in s.a the acceleration if no dropper were slack, in mv_ M times the
-// predictor of v.
-void Hht::predict(const StepFactors& f, const Loads& l1, LineState& s) {
-  const Parameters& p = line_.p;
-  s.u += f.h * s.v + f.old_position * s.a;
-  s.v += f.old_velocity * s.a;
-  y_ = s.u + p.damping.stiffness * s.v;
-  wires_.multiply(y_, x_);
-  line_.add_springs(s.u, x_);
-  mass_.multiply(s.v, mv_);
-  x_ += p.damping.mass * mv_;
-  s.a = f.hht_alpha * s.internal - f.weight * x_;
-  l1.add_to(s.a, f.weight);
-  f.factor.solve(s.a);
-}
-
-// With what the slack droppers do: the state at the end of the step.
-void Hht::correct(const StepFactors& f, LineState& s) {
-  const double w = f.weight;
-  add_slack(f.droppers, w, s.slack, s.a);
-  s.u += f.beta_h2 * s.a;
-  s.v += f.gamma_h * s.a;
-  mass_.multiply(s.a, ma_);
-  s.internal = (f.hht_alpha / w) * s.internal - (1 / w) * ma_;
-}
-
-bool Hht::step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s, bool with_energies) {
-  const Parameters& p = line_.p;
-  const double work_before = with_energies ? l0.dot(s.u) + l1.dot(s.u) : 0;
-  move_memory(f.hht_alpha, s.h, f.h, s.a_slope, s.a);
-  const bool slope_known = tells_slope(f.h, s.h);
-  if (slope_known) s.a_slope = s.a;
-  if (with_energies) old_v_ = s.v;
-  predict(f, l1, s);
-  trial_forces(s.u, s.a, f.beta_h2);
+bool Hht::step(const StepFactors& f, const Loads& l1, const LineState& from, LineState& to) {
+  const VectorXd* a = &from.a;
+  if (from.h > 0 && from.h != f.h) {
+    x_ = from.a;
+    move_memory(f.hht_alpha, from.h, f.h, from.a_slope, x_);
+    a = &x_;
+  }
+  sweeps::predict(
+      operators(), f, all(),
+      {from.u.data(), from.v.data(), a->data(), from.internal.data(), to.u.data(), to.v.data(), to.a.data()});
+  line_.add_springs(-f.weight, to.u, to.a);
+  l1.add_to(to.a, f.weight);
+  f.factor.solve(to.a);
+  trial_forces(to.u, to.a, f.beta_h2);
   trial_ += line_.shape.tension;
-  const std::optional<int> solved = slackening_.solve(trial_, f.droppers.compliance(), s.slack);
-  if (!solved || !s.a.allFinite()) return false;
-  correct(f, s);
-  if (slope_known) s.a_slope = (s.a - s.a_slope) / f.h;
-  s.h = f.h;
-  s.statistics.steps += 1;
-  s.statistics.add_attempt(*solved);
-  if (!with_energies) return true;
-
-  // Energies; mv_ becomes M v. The loss at the mean velocity: with hht_alpha = 0 and no change of the slack
-  // droppers the energies then balance to rounding.
-  mv_ += f.gamma_h * ma_;
-  s.kinetic = 0.5 * s.v.dot(mv_);
-  s.dissipated += 0.25 * f.h * old_v_.dot(s.damping);
-  wires_.multiply(s.v, x_);
-  s.damping = p.damping.stiffness * x_ + p.damping.mass * mv_;
-  s.dissipated += 0.25 * f.h * (2 * old_v_.dot(s.damping) + s.v.dot(s.damping));
-  s.work += 0.5 * (l0.dot(s.u) + l1.dot(s.u) - work_before);
-  // u' K u from the internal forces, which hold K u, the slack droppers and less the contact forces.
-  double strain = s.u.dot(s.internal) - s.u.dot(s.damping) + l1.dot(s.u);
-  for (int j = 0; j < static_cast<int>(s.slack.size()); ++j)
-    if (s.slack[j] != 0) strain -= line_.shape.stiffness[j] * s.slack[j] * (stretch(line_.mesh, s.u, j) + s.slack[j]);
-  s.elastic = 0.5 * strain;
+  to.slack = from.slack;
+  const std::optional<int> solved = slackening_.solve(trial_, f.droppers, to.slack);
+  if (!solved) return false;
+  add_slack(f.droppers, f.weight, to.slack, to.a);
+  const bool slope_known = tells_slope(f.h, from.h);
+  if (!slope_known) to.a_slope = from.a_slope;
+  if (!sweeps::correct(operators(), f, all(),
+                       {to.a.data(), from.internal.data(), a->data(), to.u.data(), to.v.data(), to.internal.data(),
+                        slope_known ? to.a_slope.data() : nullptr}))
+    return false;
+  to.h = f.h;
+  to.statistics = from.statistics;
+  to.statistics.steps += 1;
+  to.statistics.add_attempt(*solved);
   return true;
 }
 
-void Hht::step_variation(const StepFactors& f, const Loads& dl1, const LineState& to, LineState& d) {
-  if (d.u.isZero(0) && d.v.isZero(0) && d.a.isZero(0) && d.internal.isZero(0)) {
-    // The usual case, a single step: nothing has varied before it.
-    mv_.setZero();
-    dl1.add_to(d.a, f.weight);
-    f.factor.solve(d.a);
-  } else {
-    predict(f, dl1, d);
+// The loss is that at the mean velocity: with hht_alpha = 0 and no change of the slack droppers the energies then
+// balance to rounding.
+void Hht::account(const StepFactors& f, const Loads& l0, const Loads& l1, const LineState& from, LineState& to) {
+  const sweeps::Products p = sweeps::account(
+      operators(), all(), {to.u.data(), to.v.data(), to.internal.data(), from.v.data(), to.damping.data()});
+  to.kinetic = 0.5 * p.v_mass_v;
+  to.loss_power = p.v_damping;
+  to.dissipated = from.dissipated + 0.25 * f.h * (from.loss_power + 2 * p.old_v_damping + to.loss_power);
+  to.work = from.work + 0.5 * (l0.dot(to.u) + l1.dot(to.u) - l0.dot(from.u) - l1.dot(from.u));
+  // u' K u from the internal forces, which hold K u, the slack droppers and less the contact forces.
+  double strain = p.u_internal - p.u_damping + l1.dot(to.u);
+  for (int j = 0; j < static_cast<int>(to.slack.size()); ++j)
+    if (to.slack[j] != 0)
+      strain -= line_.shape.stiffness[j] * to.slack[j] * (stretch(line_.mesh, to.u, j) + to.slack[j]);
+  to.elastic = 0.5 * strain;
+}
+
+double Hht::kinetic_change(const LineState& s, const VectorXd& dv) {
+  mass_.multiply(dv, x_);
+  return s.v.dot(x_);
+}
+
+void Hht::step_variation(const StepFactors& f, const Loads& dl1, const LineState& to, Variation& v) {
+  LineState& d = v.d;
+  const auto one_more = [&](Range on) { return Range{std::max(on.begin - 1, 0), std::min(on.end + 1, all().end)}; };
+  const bool slope_known = tells_slope(f.h, d.h);
+  Range on = v.on;
+  if (!on.empty()) {
+    on = one_more(on);
+    const auto in = [&](VectorXd& x) { return x.segment(4 * on.begin, 4 * on.count()); };
+    auto a = in(d.a);
+    move_memory(f.hht_alpha, d.h, f.h, in(d.a_slope), a);
+    if (slope_known) in(d.a_slope) = a;
+    sweeps::predict(operators(), f, on,
+                    {d.u.data(), d.v.data(), d.a.data(), d.internal.data(), d.u.data(), d.v.data(), d.a.data()});
+    line_.add_springs(-f.weight, d.u, d.a);
   }
-  trial_forces(d.u, d.a, f.beta_h2);
-  slackening_.solve_variation(trial_, f.droppers.compliance(), to.slack, d.slack);
-  correct(f, d);
-  mv_ += f.gamma_h * ma_;
-  d.kinetic = to.v.dot(mv_);
+  dl1.add_to(d.a, f.weight);
+  for (const PointLoad& l : dl1.on)
+    if (!l.value.isZero(0)) on = on.with({l.place.station, l.place.station + 2});
+  if (on.empty()) return;
+  on = on.with(f.factor.solve(d.a, on));
+  if ((to.slack.array() > 0).any()) {
+    trial_forces(d.u, d.a, f.beta_h2);
+    slackening_.solve_variation(trial_, f.droppers, to.slack, d.slack);
+    on = on.with(add_slack(f.droppers, f.weight, d.slack, d.a));
+  } else {
+    d.slack.setZero();
+  }
+  v.on = on = one_more(on);
+  sweeps::correct(operators(), f, on,
+                  {d.a.data(), d.internal.data(), d.a_slope.data(), d.u.data(), d.v.data(), d.internal.data(),
+                   slope_known ? d.a_slope.data() : nullptr});
+  d.h = f.h;
 }
 
 }  // namespace zspring::catenary

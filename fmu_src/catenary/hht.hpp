@@ -31,14 +31,15 @@ class Hht {
 
   // At rest in equilibrium under `loads`; none where no set of slack droppers fits.
   std::optional<LineState> at_rest(const Loads& loads);
-  LineState at_rest_variation(const Loads& dloads, const VectorXd& slack);  // slack: of the state at rest
-  // From the loads `l0`, at its begin, to `l1`. False, with `s` without meaning, when no set of slack droppers fits.
-  // The energies, and the damping forces that they are made of, may be left out: a third of the work.
-  [[nodiscard]] bool step(const StepFactors& f, const Loads& l0, const Loads& l1, LineState& s,
-                          bool with_energies = true);
-  // The same for a variation `d` of the state that the step led to `to` from; what is slack stays slack. Of
-  // the energies it knows the kinetic one.
-  void step_variation(const StepFactors& f, const Loads& dl1, const LineState& to, LineState& d);
+  Variation at_rest_variation(const Loads& dloads, const VectorXd& slack);  // slack: of the state at rest
+  // From the state `from` to another object `to`, under the loads `l1` at its end; energies aside. False, with `to`
+  // without meaning, when no set of slack droppers fits or the values overflow.
+  [[nodiscard]] bool step(const StepFactors& f, const Loads& l1, const LineState& from, LineState& to);
+  // The energies of `to`, and the damping forces that they are made of, after that step under loads from `l0` on.
+  void account(const StepFactors& f, const Loads& l0, const Loads& l1, const LineState& from, LineState& to);
+  // The same step for a variation of the state that it led to `to` from; what is slack stays slack.
+  void step_variation(const StepFactors& f, const Loads& dl1, const LineState& to, Variation& v);
+  double kinetic_change(const LineState& s, const VectorXd& dv);  // J, with a change of the velocities
   // The contact forces jump from `l0` to `l1` between two steps; HHT's memory goes with them, else the first step
   // would still feel the old ones.
   void jump(const Loads& l0, const Loads& l1, LineState& s);
@@ -46,17 +47,19 @@ class Hht {
  private:
   BlockCholesky static_factor() const;
   LineState at_rest_if_taut(const BlockCholesky& factor, const Loads& loads) const;  // no dropper slack
-  void add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const;
-  void predict(const StepFactors& f, const Loads& l1, LineState& s);
-  void correct(const StepFactors& f, LineState& s);
+  Range add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const;
+  sweeps::Operators operators() const {
+    return {wires_.rows(), mass_.rows(), line_.p.damping.stiffness, line_.p.damping.mass};
+  }
+  Range all() const { return {0, line_.mesh.stations()}; }
   void trial_forces(const VectorXd& u, const VectorXd& a, double beta_h2);
 
   const Line& line_;
   const WireOperator wires_, mass_;
   BlockCholesky mass_factor_;
   Slackening slackening_;
-  std::unique_ptr<StepFactors> factors_[4];   // the last used first
-  VectorXd x_, y_, mv_, ma_, old_v_, trial_;  // workspace
+  std::unique_ptr<StepFactors> factors_[4];  // the last used first
+  VectorXd x_, trial_;                       // workspace
 };
 
 }  // namespace zspring::catenary

@@ -22,28 +22,52 @@ LineState LineState::at_rest(const Line& line) {
   return s;
 }
 
-void LineState::set_zero() {
-  for (VectorXd* x : {&u, &v, &a, &a_slope, &internal, &damping, &slack}) x->setZero();
-  h = kinetic = elastic = dissipated = work = 0;
+void Variation::clear() {
+  for (VectorXd* x : {&d.u, &d.v, &d.a, &d.a_slope, &d.internal}) x->segment(4 * on.begin, 4 * on.count()).setZero();
+  d.slack.setZero();
+  d.h = 0;
+  on = {0, 0};
 }
 
-void Line::add_springs(const VectorXd& u, VectorXd& internal) const {
-  for (const Spring& s : matrices.supports) internal[s.dof] += s.stiffness * u[s.dof];
+void Variation::take_over(const Variation& other) {
+  on = other.on;
+  const auto copy = [&](const VectorXd& from, VectorXd& to) {
+    to.segment(4 * on.begin, 4 * on.count()) = from.segment(4 * on.begin, 4 * on.count());
+  };
+  copy(other.d.u, d.u), copy(other.d.v, d.v), copy(other.d.a, d.a);
+  copy(other.d.a_slope, d.a_slope), copy(other.d.internal, d.internal);
+  d.slack = other.d.slack;
+  d.h = other.d.h;
+}
+
+void Variation::add_to(LineState& s, double factor) const {
+  const auto in = [&](auto& x) { return x.segment(4 * on.begin, 4 * on.count()); };
+  in(s.u) += factor * in(d.u);
+  in(s.v) += factor * in(d.v);
+  in(s.a) += factor * in(d.a);
+  in(s.a_slope) += factor * in(d.a_slope);
+  in(s.internal) += factor * in(d.internal);
+  s.slack += factor * d.slack;
+}
+
+void Line::add_springs(double factor, const VectorXd& u, VectorXd& forces) const {
+  for (const Spring& s : matrices.supports) forces[s.dof] += factor * s.stiffness * u[s.dof];
   for (int j = 0; j < static_cast<int>(mesh.droppers.size()); ++j)
-    add_tension(mesh, j, shape.stiffness[j] * stretch(mesh, u, j), internal);
+    add_tension(mesh, j, factor * shape.stiffness[j] * stretch(mesh, u, j), forces);
 }
 
 SparseMatrix Line::stiffness() const {
-  SparseMatrix k = matrices.wires;
-  for (const Spring& s : matrices.supports) k.coeffRef(s.dof, s.dof) += s.stiffness;
+  std::vector<Eigen::Triplet<double>> springs;
+  for (const Spring& s : matrices.supports) springs.emplace_back(s.dof, s.dof, s.stiffness);
   for (size_t j = 0; j < mesh.droppers.size(); ++j) {
     const int contact = deflection(mesh.droppers[j], Contact), messenger = deflection(mesh.droppers[j], Messenger);
-    const double stiffness = shape.stiffness[static_cast<Eigen::Index>(j)];
-    k.coeffRef(contact, contact) += stiffness, k.coeffRef(messenger, messenger) += stiffness;
-    k.coeffRef(contact, messenger) -= stiffness, k.coeffRef(messenger, contact) -= stiffness;
+    const double k = shape.stiffness[static_cast<Eigen::Index>(j)];
+    springs.emplace_back(contact, contact, k), springs.emplace_back(messenger, messenger, k);
+    springs.emplace_back(contact, messenger, -k), springs.emplace_back(messenger, contact, -k);
   }
-  k.makeCompressed();
-  return k;
+  SparseMatrix k(mesh.dofs(), mesh.dofs());
+  k.setFromTriplets(springs.begin(), springs.end());
+  return matrices.wires + k;
 }
 
 }  // namespace zspring::catenary

@@ -3,6 +3,7 @@
 
 #include "common/statistics.hpp"
 #include "static_shape.hpp"
+#include "sweeps.hpp"
 
 namespace zspring::catenary {
 
@@ -12,8 +13,9 @@ namespace zspring::catenary {
 struct Line {
   explicit Line(const Parameters& parameters);  // refers to them
 
-  void add_springs(const VectorXd& u, VectorXd& internal) const;  // supports, steady arms, pulling droppers
-  SparseMatrix stiffness() const;                                 // K
+  // Forces of supports, steady arms and droppers that pull, times `factor`.
+  void add_springs(double factor, const VectorXd& u, VectorXd& forces) const;
+  SparseMatrix stiffness() const;  // K
   // Of the contact wire at the nodes about a place, over the datum.
   Eigen::Vector4d heights(const VectorXd& u, const Place& at) const { return at.of(u) + at.of(shape.height); }
 
@@ -56,22 +58,33 @@ struct Passage {
 ZSPRING_MEMBERS(Passage, position, speed, force)
 
 struct LineState {
-  VectorXd u, v;      // m and 1, m/s and 1/s
-  VectorXd a;         // HHT's memory, common/hht.hpp
-  VectorXd a_slope;   // its rate
-  VectorXd internal;  // N and N m: C v + K u + slack droppers - contact forces
-  VectorXd damping;   // N and N m: C v
-  VectorXd slack;     // m, of the droppers
-  double h = 0;       // s, of the last step; 0 before the first
+  VectorXd u, v;          // m and 1, m/s and 1/s
+  VectorXd a;             // HHT's memory, common/hht.hpp
+  VectorXd a_slope;       // its rate
+  VectorXd internal;      // N and N m: C v + K u + slack droppers - contact forces
+  VectorXd damping;       // N and N m: C v
+  VectorXd slack;         // m, of the droppers
+  double h = 0;           // s, of the last step; 0 before the first
+  double loss_power = 0;  // W, of the damping; known where the energies are
   // J; elastic from the unloaded static state
   double kinetic = 0, elastic = 0, dissipated = 0, work = 0;
   Passage passage[pantographs];
   Statistics statistics;
 
   static LineState at_rest(const Line& line);  // unloaded; also a variation of nothing
-  void set_zero();                             // keeps the sizes
 };
-ZSPRING_MEMBERS(LineState, u, v, a, a_slope, internal, damping, slack, h, kinetic, elastic, dissipated, work, passage,
-                statistics)
+ZSPRING_MEMBERS(LineState, u, v, a, a_slope, internal, damping, slack, h, loss_power, kinetic, elastic, dissipated,
+                work, passage, statistics)
+
+// How a state varies with something that acts at one place: within a step that is felt at a few stations alone.
+struct Variation {
+  LineState d;
+  Range on{0, 0};  // stations; outside of them d is zero
+
+  static Variation of_nothing(const Line& line) { return {LineState::at_rest(line)}; }
+  void clear();
+  void take_over(const Variation& other);          // after clear()
+  void add_to(LineState& s, double factor) const;  // s += factor d, but for energies, passages and statistics
+};
 
 }  // namespace zspring::catenary

@@ -68,6 +68,7 @@ struct Parameters {
   struct {
     double step;       // s, largest internal step
     double hht_alpha;  // [-1/3, 0]
+    bool energies;     // are followed
   } solver;
   Exchange exchange;
   double exchange_step;  // s, the first communication step

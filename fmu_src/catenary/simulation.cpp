@@ -42,6 +42,7 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
       refuse("exchange.step = %g s: no set of slack droppers fits in the first step", p.exchange_step);
   }
   state.line = as_expected ? rest : at_rest(placed);
+  if (!as_expected) foresight_.forget();
   if (p.exchange == Exchange::Parallel) state.known = state.line;
   begin(std::move(state), {inputs, 0});
 }
@@ -75,39 +76,93 @@ std::optional<Discard> Simulation::leaves_line(const CommunicationStep& step) co
 }
 
 std::optional<Discard> Simulation::run(const Held& told) {
-  const Exchange exchange = line_.p.exchange;
-  Held held = told;
-  if (exchange == Exchange::Parallel) {
-    if (!correct_guess(told)) return no_slack(0);
-    state_.known = state_.line;
-    for (PantographInputs& u : held.inputs.pantograph) u.force = Signal{u.force.value};
-    state_.guessed = held;
+  std::copy_n(state_.map, pantographs, next_.map);
+  next_.guessed = state_.guessed;
+  next_.foreseen = state_.foreseen;
+  switch (line_.p.exchange) {
+    case Exchange::Sequential:
+      return run_sequential(told);
+    case Exchange::Parallel:
+      return run_parallel(told);
+    case Exchange::Target:
+      break;
   }
-  const CommunicationStep step(line_, state_.line.passage, held);
-  if (const std::optional<Discard> discard = leaves_line(step)) return discard;
-  if (!foresight_.advance(step, state_.line, exchange == Exchange::Parallel)) return no_slack(held.length);
-  if (exchange == Exchange::Target) {
-    for (int i = 0; i < pantographs; ++i) state_.map[i].free = height_under(line_, state_.line, i);
-    return std::nullopt;
-  }
-  state_.foreseen = held.length;
-  if (!foresight_.look(state_.line, held.length, state_.map)) return no_slack(held.length);
+  const CommunicationStep step(line_, state_.line.passage, told);
+  if (std::optional<Discard> discard = leaves_line(step)) return discard;
+  if (!foresight_.advance(step, state_.line, next_.line, false)) return no_slack(told.length);
+  for (int i = 0; i < pantographs; ++i) next_.map[i].free = height_under(line_, next_.line, i);
   return std::nullopt;
 }
 
-// The last step once more, to the forces at its end, which have come to be known.
-bool Simulation::correct_guess(const Held& told) {
-  Held& held = state_.guessed;
-  if (held.length == 0) {
-    const Loads guessed = loads_at(line_.mesh, state_.line.passage);
-    for (int i = 0; i < pantographs; ++i) state_.line.passage[i].force = told.inputs.pantograph[i].force.value;
-    hht_.jump(guessed, loads_at(line_.mesh, state_.line.passage), state_.line);
+std::optional<Discard> Simulation::run_sequential(const Held& told) {
+  const CommunicationStep step(line_, state_.line.passage, told);
+  if (std::optional<Discard> discard = leaves_line(step)) return discard;
+  if (!foresight_.has_looked()) {
+    AffineMap known[pantographs];
+    foresight_.begin_known();
+    if (!foresight_.look(state_.line, state_.foreseen, known)) return no_slack(0);
+  }
+  ForceChange change;
+  for (int i = 0; i < pantographs; ++i) change.end[i] = step.at(i, told.length).force - state_.line.passage[i].force;
+  if (foresight_.foresaw(step, change))
+    foresight_.take(step, state_.line, change, next_.line);
+  else if (!foresight_.advance(step, state_.line, next_.line, false))
+    return no_slack(told.length);
+  foresight_.begin_known();
+  return look_ahead(told.length);
+}
+
+std::optional<Discard> Simulation::run_parallel(const Held& told) {
+  ForceChange change;
+  for (int i = 0; i < pantographs; ++i)
+    change.begin[i] = change.end[i] = told.inputs.pantograph[i].force.value - state_.line.passage[i].force;
+  Held held = told;
+  for (PantographInputs& u : held.inputs.pantograph) u.force = Signal{u.force.value};
+  next_.guessed = held;
+
+  bool corrected = false;
+  if (!correct_guess(told, change, corrected)) return no_slack(0);
+  const CommunicationStep step(line_, next_.known.passage, held);
+  if (std::optional<Discard> discard = leaves_line(step)) return discard;
+  if (corrected && foresight_.foresaw(step, change))
+    foresight_.take(step, next_.known, change, next_.line);
+  else if (!foresight_.advance(step, next_.known, next_.line, true))
+    return no_slack(told.length);
+  foresight_.begin_unknown();
+  return look_ahead(told.length);
+}
+
+// The last step once more, to next_.known, with the forces at its end, which have come to be known. `corrected`: by
+// what is known of it alone.
+bool Simulation::correct_guess(const Held& told, const ForceChange& change, bool& corrected) {
+  if (state_.guessed.length == 0) {
+    next_.known = state_.line;
+    for (int i = 0; i < pantographs; ++i) next_.known.passage[i].force = told.inputs.pantograph[i].force.value;
+    hht_.jump(loads_at(line_.mesh, state_.line.passage), loads_at(line_.mesh, next_.known.passage), next_.known);
+    corrected = std::all_of(change.end, change.end + pantographs, [](double by) { return by == 0; });
     return true;
   }
-  for (int i = 0; i < pantographs; ++i) held.inputs.pantograph[i].force = Signal{told.inputs.pantograph[i].force.value};
-  state_.line = state_.known;
+  if (!foresight_.has_looked()) {
+    const CommunicationStep step(line_, state_.known.passage, state_.guessed);
+    if (!foresight_.advance(step, state_.known, next_.line, true)) return false;
+    foresight_.begin_unknown();
+    AffineMap known[pantographs];
+    if (!foresight_.look(state_.line, state_.foreseen, known)) return false;
+  }
+  Held held = state_.guessed;
+  for (int i = 0; i < pantographs; ++i) held.inputs.pantograph[i].force.value = told.inputs.pantograph[i].force.value;
   const CommunicationStep step(line_, state_.known.passage, held);
-  return foresight_.advance(step, state_.line, false);
+  corrected = foresight_.can_correct(step, change);
+  if (!corrected) return foresight_.advance(step, state_.known, next_.known, false);
+  next_.known = state_.line;
+  foresight_.correct(step, state_.known, change, next_.known);
+  return true;
+}
+
+std::optional<Discard> Simulation::look_ahead(double length) {
+  next_.foreseen = length;
+  if (!foresight_.look(next_.line, length, next_.map)) return no_slack(length);
+  return std::nullopt;
 }
 
 bool Simulation::is_possible(const SimulationState& s) const {

@@ -38,7 +38,11 @@ class Simulation final : public Model<Simulation, Inputs, SimulationState, Held>
   // Discarded where a pantograph that presses leaves the line, or the slack droppers could not be found.
   std::optional<Discard> run(const Held& held) override;
   std::optional<Discard> leaves_line(const CommunicationStep& step) const;
-  [[nodiscard]] bool correct_guess(const Held& held);
+  std::optional<Discard> run_sequential(const Held& told);
+  std::optional<Discard> run_parallel(const Held& told);
+  [[nodiscard]] bool correct_guess(const Held& told, const ForceChange& change, bool& corrected);
+  std::optional<Discard> look_ahead(double length);
+  void went_back() override { foresight_.forget(); }
   LineState at_rest(const Passage passage[pantographs]);
   Outputs present_outputs() const override;
   Outputs change(const LineState& d) const;  // of the outputs, with that of the line

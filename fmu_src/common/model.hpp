@@ -33,18 +33,21 @@ class Model {
     }
     const Held held = self.hold(inputs, length);
     if (std::optional<Discard> discard = too_long(length, self.largest_internal_step(held))) return discard;
-    begin_ = state_;
     std::optional<Discard> discard = self.run(held);
-    forget_outputs();
-    if (!discard && !all_finite(outputs())) discard = Discard{length, text("%s", overflow)};
-    if (discard) {
-      state_ = std::move(begin_);
+    if (!discard) {
+      std::swap(state_, next_);
       forget_outputs();
-    } else {
-      before_ = std::move(begin_);
-      held_ = held;
-      waiting_ = 0;
+      if (all_finite(outputs())) {
+        std::swap(before_, next_);
+        held_ = held;
+        waiting_ = 0;
+        return std::nullopt;
+      }
+      std::swap(state_, next_);
+      forget_outputs();
+      discard = Discard{length, text("%s", overflow)};
     }
+    self.went_back();
     return discard;
   }
 
@@ -75,6 +78,7 @@ class Model {
   void restore(Reader& reader) {
     visit_all(reader);
     forget_outputs();
+    went_back();
     const bool waits = waiting_ == 0 || (waiting_ > 0 && is_leftover(waiting_, solver_step()));
     if (!(is_possible(state_) && is_possible(before_) && held_.length >= 0 && waits) ||
         too_long(held_.length, largest_internal_step(held_)) || !all_finite(outputs()))
@@ -86,7 +90,7 @@ class Model {
 
   // To be called by the constructor: the simulation begins in this state.
   void begin(State state, Held held) {
-    state_ = before_ = begin_ = std::move(state);
+    state_ = before_ = next_ = std::move(state);
     held_ = std::move(held);
     waiting_ = 0;
     if (!all_finite(outputs())) refuse(overflow);
@@ -96,14 +100,17 @@ class Model {
   virtual Held hold(const Inputs& inputs, double length) const = 0;
   virtual double solver_step() const = 0;  // s
   virtual double largest_internal_step(const Held& held) const = 0;
-  // Leads state_ from begin_ through a communication step, or to anywhere if that is discarded.
+  // Leads state_, which is kept, through a communication step to next_, of which nothing is left as it was; to anywhere
+  // if that is discarded.
   virtual std::optional<Discard> run(const Held& held) = 0;
+  // The state is not the one that run() led to last.
+  virtual void went_back() {}
   virtual Outputs present_outputs() const = 0;
   virtual bool is_possible(const State& state) const = 0;  // whether what was read could be a simulation's
 
   State state_, before_;  // before_: at the begin of the last communication step
   Held held_;             // in that; of length 0 before the first
-  State begin_;           // of a step under way
+  State next_;            // at the end of a step under way
 
  private:
   template <class Visitor>

@@ -43,9 +43,10 @@ MechanicalState Simulation::at_rest(const Inputs& inputs) const {
 std::optional<Discard> Simulation::run(const Held& held) {
   if (held.inputs.wire.gives_way() && mechanics_.parameters.drive != Drive::Wire)
     return Discard{0, no_wire(held.inputs)};
-  std::optional<Discard> discard = CommunicationStep(hht_, held).run(state_);
+  next_ = state_;
+  std::optional<Discard> discard = CommunicationStep(hht_, held).run(next_);
   // The accelerations of HHT are its own; no output shows them.
-  const MechanicalState& s = state_.mechanical;
+  const MechanicalState& s = next_.mechanical;
   if (!discard && !(s.a.allFinite() && s.a_slope.allFinite())) discard = Discard{held.length, text("%s", overflow)};
   return discard;
 }

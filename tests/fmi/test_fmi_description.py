@@ -183,6 +183,8 @@ def neighbours(v: ScalarVariable, value: Value) -> list[Value]:
     """Values near that of a variable, within its bounds."""
     if v.type == "Enumeration":
         return [int(item.value) for item in v.declaredType.items if int(item.value) != value]
+    if v.type == "Boolean":
+        return [not value]
     near = [value + 1, value - 1] if v.type == "Integer" else [1.01 * value + 1e-4, 0.99 * value - 1e-4]
     low, high = (float(b) if b is not None else None for b in (v.min, v.max))
     return [x for x in near if (low is None or x >= low) and (high is None or x <= high)]

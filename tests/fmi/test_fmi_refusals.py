@@ -28,6 +28,8 @@ def bad_values(fmu: Fmu, name: str) -> list[float | int]:
         return [math.nan, math.inf, -math.inf, *below, *above]
     if v.type == "Enumeration":
         return [0, len(v.declaredType.items) + 1, -1]
+    if v.type == "Boolean":
+        return []
     return [int(v.min) - 1, int(v.max) + 1]
 
 

@@ -60,6 +60,8 @@ class Fmu:
     def start(self, name: str) -> Value:
         """Start value of a variable as the model description has it."""
         v = self.variables[name]
+        if v.type == "Boolean":
+            return v.start == "true"
         return float(v.start) if v.type == "Real" else int(v.start)
 
     def names(self, causality: str) -> list[str]:

@@ -13,7 +13,7 @@ from ..errors import ZSpringError, tell
 from ..figures import save
 from ..heads import synthetic_note
 from ..interrupt import Interrupted
-from ..line.limits import near_wave_speed, of_series
+from ..line.limits import near_wave_speed, of_series, untold_supports
 from ..line.mean_force import uplifts_for
 from ..line.result import LineResult, write_result
 from ..line.run import LineRun, run_line
@@ -102,6 +102,7 @@ def run_and_write(
     for file in written[:-1]:
         write_result(result, file)
     remarks = near_wave_speed(system.catenary, system.line, system.journey.speed)
+    remarks += untold_supports(system.catenary, extent)
     try:
         filtered = low_pass(result.contact_force, system.journey.step)
         chosen = sections(result, extent, spans)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from ..fmu import Fmu
 from ..variables import Value
+from .journey import LineExtent
 from .series import Series
 from .statistics import Section
 from .waves import wave_speed
@@ -23,6 +24,22 @@ def near_wave_speed(catenary: Fmu, line: Mapping[str, Value], speed: float) -> l
     return [
         f"warning: {3.6 * speed:.4g} km/h is {speed / wave:.2f} of the contact wire's wave speed, {3.6 * wave:.4g} "
         f"km/h: above {NEAR_WAVE_SPEED:g} of it forces depend on details of the line that no data here tell"
+    ]
+
+
+def most_supports(catenary: Fmu) -> int:
+    """Supports between the line's ends whose uplift the FMU tells."""
+    return sum(variable.name.startswith("support.uplift[") for variable in catenary.variables) - 1
+
+
+def untold_supports(catenary: Fmu, extent: LineExtent) -> list[str]:
+    """A line for a line with more supports than that."""
+    told = most_supports(catenary)
+    if extent.spans - 1 <= told:
+        return []
+    return [
+        f"warning: a line of {extent.spans} spans: uplifts are told at its first {told} supports alone, those up to "
+        f"{extent.supports[told - 1]:.4g} m; no other one is among the figures"
     ]
 
 

@@ -17,6 +17,7 @@ from ..interrupt import Interrupted, stop_on_interrupt
 from ..variables import Value, parse, with_unit
 from .calls import PreparedCalls
 from .journey import FittedJourney
+from .limits import most_supports
 from .recorder import Recorder
 from .result import LineResult
 from .schemes import MAPPED, GaussSeidel, Implicit, Jacobi, Mapped, Pantographs
@@ -81,7 +82,8 @@ class LineRun:
         self._wire = Wire(wire_calls, datum)
         self._uplifts = [calls.reals([f"uplift.{self.journey.uplift_on}"]) for calls in head_calls]
         self._scheme = self._make_scheme(head_calls)
-        self._record = Recorder(self.steps + 1, wire_calls, head_calls, self.line.supports, datum)
+        supports = self.line.supports[: most_supports(system.catenary)]
+        self._record = Recorder(self.steps + 1, wire_calls, head_calls, supports, datum)
         self._record.take(0, self._shifts(0.0))
 
     @cached_property
@@ -97,7 +99,8 @@ class LineRun:
     @cached_property
     def wire_start(self) -> tuple[dict[str, Value], dict[str, float]]:
         """Parameters and first inputs of the catenary."""
-        parameters, inputs = dict(self.system.line), dict[str, float]()
+        unread = {"solver.energies"} & set(self.system.catenary.variables.names("parameter"))  # older FMUs lack it
+        parameters, inputs = {**dict.fromkeys(unread, False), **self.system.line}, dict[str, float]()
         for i, force in enumerate(self._static_forces):
             name = f"pantograph[{i + 1}]"
             parameters[f"{name}.start"] = self.journey.start - i * self.journey.spacing
