@@ -19,14 +19,15 @@ Count steps_in_period(double frequency, double largest_step) {
 
 Ramp Ramp::to(double target, const Point& from, double length) {
   const double rise = target - from.value, d = from.slope * length, c = 0.5 * from.curvature * length * length;
-  return {{from.value, d, c, 10 * rise - 6 * d - 3 * c, -15 * rise + 8 * d + 3 * c, 6 * rise - 3 * d - c}, length};
+  return {
+      {from.value, d, c, 10 * rise - 6 * d - 3 * c, -15 * rise + 8 * d + 3 * c, 6 * rise - 3 * d - c}, length, target};
 }
 
 Ramp::Point Ramp::at(double s) const {
-  const double x = std::min(s / length, 1.0);
+  if (s >= length) return {end};
+  const double x = s / length;
   Point p;
   p.value = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
-  if (x == 1) return p;
   p.slope = (c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))) / length;
   p.curvature = (2 * c[2] + x * (6 * c[3] + x * (12 * c[4] + x * 20 * c[5]))) / (length * length);
   return p;
@@ -36,22 +37,21 @@ double Ramp::integral(double s) const {
   const double x = std::min(s / length, 1.0);
   const double ramp =
       length * x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3 + x * (c[3] / 4 + x * (c[4] / 5 + x * c[5] / 6)))));
-  return ramp + (s > length ? (s - length) * at(length).value : 0);
+  return ramp + (s > length ? (s - length) * end : 0);
 }
 
 bool BenchState::is_possible(double largest_step) const {
   const double frequency = programme.frequency;
   if (frequency == 0) return true;
-  const double step = 1 / (frequency * steps_per_period);
   return frequency > 0 && steps_per_period == steps_in_period(frequency, largest_step) &&
-         ramp_steps >= steps_per_period && offset >= 0 && offset < step && std::abs(carry) < step;
+         step == Bench::grid_step(frequency, largest_step) && ramp_steps >= steps_per_period &&
+         in_period == std::max<Count>(0, node - ramp_steps) % steps_per_period && offset >= 0 && offset < step &&
+         std::abs(carry) < step;
 }
 
 double Bench::grid_step(double frequency, double largest_step) {
   return 1 / (frequency * steps_in_period(frequency, largest_step));
 }
-
-double Bench::grid_step() const { return 1 / (b_.programme.frequency * b_.steps_per_period); }
 
 double Bench::elapsed() const { return b_.node * grid_step() + b_.offset; }
 
@@ -60,10 +60,11 @@ double Bench::to_next_node() const { return grid_step() - b_.offset; }
 double Bench::phase_at(double s) const {
   const double ramp_end = b_.ramp_steps * grid_step();
   if (s <= ramp_end) return b_.phase + 2 * pi * b_.speed.integral(s);
-  // After the ramp from the node count, so that no rounding grows over many periods.
-  const Count node = (b_.node - b_.ramp_steps) % b_.steps_per_period;
+  // After the ramp from the node count, so that no rounding grows over many periods. Rounding may put the ramp's end, a
+  // step ahead, behind it.
+  const Count node = b_.node < b_.ramp_steps ? b_.node - b_.ramp_steps : b_.in_period;
   const double beyond = (s - elapsed() + b_.offset) / grid_step();
-  return b_.phase + 2 * pi * (b_.speed.integral(ramp_end) + (node + beyond) / b_.steps_per_period);
+  return b_.ramp_phase + 2 * pi * (node + beyond) / b_.steps_per_period;
 }
 
 Phasor Bench::motion(double tau, Boundary& b) const {
@@ -94,12 +95,14 @@ void Bench::tune(const BenchParameters& programme, double largest_step) {
   b_.programme = programme;
   b_.phase = phase;
   b_.steps_per_period = steps_in_period(frequency, largest_step);
+  b_.step = grid_step(frequency, largest_step);
   const double slower = std::max(1.0, frequency / std::max(f.value, 1e-3 * frequency));
   // Whole periods: a host that steps by periods then stays on the grid.
   b_.ramp_steps = b_.steps_per_period * std::lround(slower);
   const double length = b_.ramp_steps * grid_step();
   b_.amplitude = Ramp::to(target, X, length);
   b_.speed = Ramp::to(frequency, f, length);
+  b_.ramp_phase = phase + 2 * pi * b_.speed.integral(length);
 }
 
 void Bench::advance(double h, bool reaches_node, Phasor begin, double force_begin, Phasor end, double force_end) {
@@ -115,12 +118,13 @@ void Bench::advance(double h, bool reaches_node, Phasor begin, double force_begi
   }
   b_.offset = 0;
   b_.node += 1;
-  const Count done = b_.node - b_.ramp_steps;
-  if (done > 0 && done % b_.steps_per_period == 0) finish_period();
+  if (b_.node <= b_.ramp_steps || ++b_.in_period < b_.steps_per_period) return;
+  b_.in_period = 0;
+  finish_period();
 }
 
 void Bench::finish_period() {
-  const double X = b_.amplitude.at(b_.amplitude.length).value;
+  const double X = b_.amplitude.end;
   const std::complex<double> force(b_.sin_sum, b_.cos_sum), before(b_.H_re, b_.H_im);
   const std::complex<double> H = X > 0 && std::norm(force) > 0 ? -X / force : 0;
   b_.change = b_.periods > 0 && std::norm(H) > 0 ? std::abs(H - before) / std::abs(H) : 1;

@@ -20,6 +20,7 @@ namespace zspring {
 struct Ramp {
   double c[6] = {};  // coefficients in x = s / length
   double length = 0;
+  double end = 0;  // the constant
 
   struct Point {
     double value = 0, slope = 0, curvature = 0;
@@ -28,15 +29,18 @@ struct Ramp {
   Point at(double s) const;
   double integral(double s) const;
 };
-ZSPRING_MEMBERS(Ramp, c, length)
+ZSPRING_MEMBERS(Ramp, c, length, end)
 
 struct BenchState {
   BenchParameters programme;  // its targets; frequency 0: none yet
   Ramp amplitude, speed;      // m; Hz
   double phase = 0;           // rad, where the ramp began
+  double ramp_phase = 0;      // rad, where it ends
   Count steps_per_period = 0;
+  double step = 0;  // s, of the grid
   Count ramp_steps = 0;
   Count node = 0;                   // grid steps done since the ramp began
+  Count in_period = 0;              // of these since the last whole period, or the ramp
   double offset = 0;                // s beyond that node, where a communication point cut a step
   double carry = 0;                 // s, rounding left over by the last communication step
   double sin_sum = 0, cos_sum = 0;  // N, of the running period
@@ -46,8 +50,8 @@ struct BenchState {
 
   bool is_possible(double largest_step) const;
 };
-ZSPRING_MEMBERS(BenchState, programme, amplitude, speed, phase, steps_per_period, ramp_steps, node, offset, carry,
-                sin_sum, cos_sum, periods, H_re, H_im, change)
+ZSPRING_MEMBERS(BenchState, programme, amplitude, speed, phase, ramp_phase, steps_per_period, step, ramp_steps, node,
+                in_period, offset, carry, sin_sum, cos_sum, periods, H_re, H_im, change)
 
 // Internal steps in a period of the grid: the fewest whole number of at most `largest_step` s, 16 at least.
 Count steps_in_period(double frequency, double largest_step);
@@ -64,7 +68,7 @@ class Bench {
   void tune(const BenchParameters& programme, double largest_step);
   // s, of the grid at this frequency
   static double grid_step(double frequency, double largest_step);
-  double grid_step() const;                      // s
+  double grid_step() const { return b_.step; }   // s
   double to_next_node() const;                   // s
   Phasor motion(double tau, Boundary& b) const;  // tau s from now
   // Move on by h s, a step that ends at the next node if `reaches_node`; phases and forces (N, less the static

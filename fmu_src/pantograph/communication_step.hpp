@@ -54,12 +54,23 @@ class CommunicationStep {
   bool gives_way() const { return p_.drive == Drive::Wire && held_.inputs.wire.gives_way(); }
 
  private:
+  // The state that is led through the internal steps, and room for the next one: they change places.
+  struct Course {
+    explicit Course(MechanicalState& state) : kept(state), now(&state), next(&room) {}
+    ~Course() {
+      if (now != &kept) kept = *now;
+    }
+
+    MechanicalState& kept;
+    MechanicalState room;
+    MechanicalState *now, *next;
+  };
   static constexpr int most_halvings = 10;  // to 1/1024 of the internal step
   static constexpr int most_meetings = 60;  // of a wire that gives way with the head
 
   template <class OnStep>
   std::optional<Discard> run_bench(SimulationState& state, OnStep& on_step) const {
-    MechanicalState& s = state.mechanical;
+    Course course(state.mechanical);
     Bench bench(state.bench);
     bench.tune(held_.bench, p_.solver.step);
     const double rounding = rounding_of_time * bench.grid_step();
@@ -75,15 +86,15 @@ class CommunicationStep {
     };
     Boundary b;
     Phasor begin = boundary(0, b);
-    meet(hht_, b, s);
+    meet(hht_, b, *course.now);
     while (end_time - done > rounding) {
       const bool reaches_node = end_time >= next_node - rounding;
       const double h = reaches_node ? bench.to_next_node() : end_time - done;
       set_forces(held_.inputs, done + h, b);
       const Phasor end = bench.motion(h, b);
-      const double force = s.contact_force - p_.static_force;
-      if (std::optional<Discard> discard = cover(s, boundary, b, done, h, 0, on_step)) return discard;
-      bench.advance(h, reaches_node, begin, force, end, s.contact_force - p_.static_force);
+      const double force = course.now->contact_force - p_.static_force;
+      if (std::optional<Discard> discard = cover(course, boundary, b, done, h, 0, on_step)) return discard;
+      bench.advance(h, reaches_node, begin, force, end, course.now->contact_force - p_.static_force);
       begin = end;
       done = reaches_node ? next_node : end_time;
       if (reaches_node) next_node = first_node + ++nodes * bench.grid_step();
@@ -97,7 +108,7 @@ class CommunicationStep {
   template <class OnStep>
   std::optional<Discard> run_inputs(SimulationState& state, const Signal& position, OnStep& on_step) const {
     const double H = held_.length;
-    MechanicalState& s = state.mechanical;
+    Course course(state.mechanical);
     std::optional<ImposedMotion> motion;
     if (p_.drive != Drive::Force) motion.emplace(state.motion, position, H, resolved_time(p_));
     const auto boundary = [&](double tau, Boundary& b) {
@@ -108,10 +119,11 @@ class CommunicationStep {
     const double steps = static_cast<double>(n);
     Boundary b;
     boundary(0, b);
-    meet(hht_, b, s);
+    meet(hht_, b, *course.now);
     for (Count i = 0; i < n; ++i) {
       boundary((i + 1) / steps * H, b);
-      if (std::optional<Discard> discard = cover(s, boundary, b, i / steps * H, H / steps, 0, on_step)) return discard;
+      if (std::optional<Discard> discard = cover(course, boundary, b, i / steps * H, H / steps, 0, on_step))
+        return discard;
     }
     if (motion) state.motion = motion->end();
     return std::nullopt;
@@ -119,9 +131,9 @@ class CommunicationStep {
 
   // One internal step of h s to the boundary `b`, halved as often as it takes.
   template <class BoundaryAt, class OnStep>
-  std::optional<Discard> cover(MechanicalState& s, const BoundaryAt& boundary, const Boundary& b, double begin,
-                               double h, int halvings, OnStep& on_step) const {
-    MechanicalState next;
+  std::optional<Discard> cover(Course& course, const BoundaryAt& boundary, const Boundary& b, double begin, double h,
+                               int halvings, OnStep& on_step) const {
+    MechanicalState &s = *course.now, &next = *course.next;
     const double h_last = s.h, hht_alpha = p_.solver.hht_alpha;
     move_memory(hht_alpha, h_last, h, s.a_slope, s.a);
     const Convergence end = hht_.step(s, b, h, next);
@@ -130,7 +142,7 @@ class CommunicationStep {
       next.statistics = s.statistics;
       next.statistics.steps += 1;
       on_step(s, next);
-      s = next;
+      std::swap(course.now, course.next);
       return std::nullopt;
     }
     if (halvings == most_halvings) return unsolved(begin, end);
@@ -138,9 +150,9 @@ class CommunicationStep {
     s.statistics.refinements += 1;
     Boundary middle;
     boundary(begin + 0.5 * h, middle);
-    if (std::optional<Discard> discard = cover(s, boundary, middle, begin, 0.5 * h, halvings + 1, on_step))
+    if (std::optional<Discard> discard = cover(course, boundary, middle, begin, 0.5 * h, halvings + 1, on_step))
       return discard;
-    return cover(s, boundary, b, begin + 0.5 * h, 0.5 * h, halvings + 1, on_step);
+    return cover(course, boundary, b, begin + 0.5 * h, 0.5 * h, halvings + 1, on_step);
   }
 
   const Hht& hht_;

@@ -10,6 +10,8 @@
 // and Secant converge linearly: their small change is not yet a small error, which is one reason against them.
 #pragma once
 
+#include <optional>
+
 #include "common/hht.hpp"
 #include "state.hpp"
 
@@ -19,7 +21,11 @@ namespace zspring {
 struct StepCoefficients : HhtCoefficients {
   StepCoefficients(const Mechanics& m, double step);
 
-  Vector2 rho;  // s/rad
+  JointScale joint[2];
+  double inverse_h, inverse_gamma_h;  // 1/s
+  // Of the lower frame, which Newton's matrix couples to the upper one alone, kg: the coupling, the diagonal's inverse
+  // and their product.
+  double coupling, lower_inverse, lower_share;
 };
 
 struct Contact {
@@ -29,12 +35,13 @@ struct Contact {
 
 // One iterate: the unknowns and what follows from them.
 struct Trial {
-  Vector5 x;  // unknowns
+  Vector5 q0, v0;  // predictors: with the acceleration 0 at the end of the step
+  Vector5 x;       // unknowns
   Vector5 q, v, a;
   Vector2 s;
   Vector5 internal;
   Contact contact;  // Drive::Force and Wire
-  Matrix4 head_tangent;
+  ElementResponse head;
   Vector2 angle_slope, acceleration_slope, moment_slope;  // d(q, a, s)/dx of the joints
 };
 
@@ -48,11 +55,14 @@ struct Convergence {
 
 class Hht {
  public:
-  explicit Hht(const Mechanics& mechanics) : m_(mechanics) {}
+  explicit Hht(const Mechanics& mechanics);
 
   // From `from`, its memory moved to steps of h s, to `to` under the boundary `b1`. Where Newton does not converge
   // `to` is without meaning; its statistics never have one.
-  Convergence step(const MechanicalState& from, const Boundary& b1, double h, MechanicalState& to) const;
+  Convergence step(const MechanicalState& from, const Boundary& b1, double h, MechanicalState& to) const {
+    if (!coefficients_ || coefficients_->h != h) coefficients_.emplace(m_, h);
+    return (this->*variant_->step)(*coefficients_, from, b1, to);
+  }
 
   // step_variation.cpp. How the result `to` of the step from `from` varies with that and with the surroundings;
   // variations are held in the same structures as what varies. The memory of `from` and `dfrom` is moved to steps of
@@ -77,17 +87,33 @@ class Hht {
   const Mechanics& mechanics() const { return m_; }
 
  private:
-  // From t.x all the rest of t; false where the spring has no direction. `direct`: the unknown of a joint is its
-  // acceleration, not z.
-  bool evaluate(const StepCoefficients& c, const MechanicalState& from, const Boundary& b1, bool direct,
-                Trial& t) const;
+  // The functions below, compiled for one drive and one law each.
+  struct Variant {
+    Convergence (Hht::*step)(const StepCoefficients&, const MechanicalState&, const Boundary&, MechanicalState&) const;
+    bool (Hht::*evaluate)(const StepCoefficients&, const Boundary&, Trial&) const;
+    bool (Hht::*solve)(const StepCoefficients&, const Trial&, Vector5&) const;
+  };
+  template <bool imposed>
+  static const Variant& variant_of(const Mechanics& m);
+
+  // `direct`: the unknown of a joint is its acceleration, not z.
+  template <bool imposed, FrictionLaw law, bool direct>
+  Convergence solve_step(const StepCoefficients& c, const MechanicalState& from, const Boundary& b1,
+                         MechanicalState& to) const;
+  void predict(const StepCoefficients& c, const MechanicalState& from, Trial& t) const;
+  // From t.x all the rest of t; false where the spring has no direction.
+  template <bool imposed, FrictionLaw law, bool direct>
+  bool evaluate(const StepCoefficients& c, const Boundary& b1, Trial& t) const;
   // residual -> J^-1 residual; false where J is not positive definite
+  template <bool imposed>
   bool solve(const StepCoefficients& c, const Trial& t, Vector5& residual) const;
-  Vector5 residual_scale(const MechanicalState& from) const;
+  double force_scale(const MechanicalState& from) const;
   void accept(const StepCoefficients& c, const MechanicalState& from, const Boundary& b1, const Trial& t,
               MechanicalState& to) const;
 
   const Mechanics& m_;
+  const Variant* variant_;
+  mutable std::optional<StepCoefficients> coefficients_;  // of the last step
 };
 
 }  // namespace zspring

@@ -44,62 +44,14 @@ Mechanics::Mechanics(const Parameters& p) : parameters(p), law(friction_law(p)) 
   static_ = zspring_static_state(p.zspring, load);
   calculated.zspring = {static_.theta, static_.k_locked, static_.k_free};
   rest[ALPHA] = rest[BETA] = static_.theta;
-  const auto at_rest = zspring_response(p.zspring, static_.theta, static_.theta, static_.gap);
-  if (!at_rest)
-    refuse("zspring.l0 = %g m: the spring has no length in the static state; enlarge l0 or d", p.zspring.l0);
   // Taken from the same code as in motion, so that the state of rest is balanced to the last bit.
-  at_rest_ = *at_rest;
-  static_tangent = p.suspension == Suspension::LinearLocked ? vertical_spring(static_.k_locked) : at_rest_.tangent;
+  rods_ = RodsNear(static_.theta);
+  if (!zspring_response(p.zspring, rods_.at(static_.theta, static_.theta), static_.gap, at_rest_))
+    refuse("zspring.l0 = %g m: the spring has no length in the static state; enlarge l0 or d", p.zspring.l0);
+  zspring_tangent(p.zspring, at_rest_, static_tangent);
+  if (p.suspension == Suspension::LinearLocked) static_tangent = vertical_spring(static_.k_locked);
   preload.head<4>() += at_rest_.force;
 }
-
-std::optional<ElementResponse> Mechanics::head_response(const Vector5& q) const {
-  if (parameters.suspension == Suspension::ZSpring)
-    return zspring_response(parameters.zspring, q[ALPHA], q[BETA], static_.gap + q[U2] - q[U1]);
-  const Vector4 x = q.head<4>() - rest.head<4>();
-  ElementResponse out = at_rest_;
-  out.tangent = static_tangent;
-  out.force.noalias() += static_tangent * x;
-  out.energy = at_rest_.energy + 0.5 * x.dot(at_rest_.force + out.force);
-  const double stretch = out.gradient.dot(x);
-  out.length += stretch;
-  out.tension += parameters.zspring.k * stretch;
-  return out;
-}
-
-Vector5 Mechanics::spring_force(const Vector5& q, const ElementResponse& head) const {
-  const double f2 = parameters.k2 * (q[U2] - q[U3]);
-  Vector5 f;
-  f.head<4>() = head.force - at_rest_.force;
-  f[U1] -= parameters.static_force;
-  f[U2] += f2;
-  f[U3] = parameters.k3 * q[U3] - f2;
-  return f;
-}
-
-Vector5 Mechanics::spring_force_change(const Matrix4& head_tangent, const Vector5& dq) const {
-  const double f2 = parameters.k2 * (dq[U2] - dq[U3]);
-  Vector5 f;
-  f.head<4>().noalias() = head_tangent * dq.head<4>();
-  f[U2] += f2;
-  f[U3] = parameters.k3 * dq[U3] - f2;
-  return f;
-}
-
-Vector5 Mechanics::damping_force(const Vector5& v) const {
-  const double f1 = parameters.c1 * (v[U1] - v[U2]);
-  const double f2 = parameters.c2 * (v[U2] - v[U3]);
-  Vector5 f;
-  f << f1, 0, 0, f2 - f1, parameters.c3 * v[U3] - f2;
-  return f;
-}
-
-double Mechanics::damping_power(const Vector5& v) const {
-  const double v1 = v[U1] - v[U2], v2 = v[U2] - v[U3], v3 = v[U3];
-  return parameters.c1 * v1 * v1 + parameters.c2 * v2 * v2 + parameters.c3 * v3 * v3;
-}
-
-double Mechanics::kinetic_energy(const Vector5& v) const { return 0.5 * v.dot(mass.cwiseProduct(v)); }
 
 double Mechanics::strain_energy(const Vector5& q, const ElementResponse& head) const {
   const double x = q[U2] - q[U3];

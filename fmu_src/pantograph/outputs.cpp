@@ -6,17 +6,15 @@ namespace {
 // What the definitions are written with.
 struct View {
   View(const Hht& integrator, const SimulationState& state)
-      : hht(integrator),
-        m(hht.mechanics()),
-        s(state.mechanical),
-        bench(state.bench),
-        head(m.head_response(s.q).value_or(ElementResponse())) {}
+      : hht(integrator), m(hht.mechanics()), s(state.mechanical), bench(state.bench) {
+    if (!m.head_response(s.q, head)) head = {};  // not reached: the spring of an accepted state has a direction
+  }
 
   const Hht& hht;
   const Mechanics& m;
   const MechanicalState& s;
   const BenchState& bench;
-  ElementResponse head;  // there is one: the spring of an accepted state has a direction
+  ElementResponse head;
 };
 
 double stretch(const View& x, const MechanicalState& d) { return x.head.gradient.dot(d.q.head<4>()); }

@@ -19,7 +19,34 @@ struct Resolvent {
   double dw_dz, ds_dz;  // s/rad of z's unit; 1
 };
 
-// `rho` > 0 in s/rad; `tau` in s, > 0, for Tanh only; `w_guess` only saves iterations of the scalar solve.
-Resolvent resolvent(FrictionLaw law, double rho, double tau, double z, double w_guess);
+// The root y of r y + tanh(y) = z; `guess` only saves iterations.
+double scaled_rate(double r, double z, double guess);
+
+// Of one joint in steps of one length.
+struct JointScale {
+  JointScale() = default;
+  // `rho` > 0 in s/rad; `tau` in s, for Tanh only.
+  JointScale(double rho_of_step, double tau_of_law)
+      : rho(rho_of_step), inverse(1 / rho), ratio(rho / tau_of_law), tau(tau_of_law), inverse_tau(1 / tau_of_law) {}
+
+  double rho, inverse, ratio, tau, inverse_tau;
+};
+
+// `w_guess` for Tanh only.
+template <FrictionLaw law>
+inline Resolvent resolvent(const JointScale& c, double z, double w_guess) {
+  if constexpr (law == FrictionLaw::Locked) return {0, z, 0, 1};
+  if constexpr (law == FrictionLaw::Coulomb) {
+    const double s = z < -1 ? -1 : z > 1 ? 1 : z;
+    const bool sticks = z == s;
+    return {(z - s) * c.inverse, s, sticks ? 0 : c.inverse, sticks ? 1.0 : 0.0};
+  }
+  if constexpr (law == FrictionLaw::Tanh) {
+    const double w = scaled_rate(c.ratio, z, c.tau * w_guess) * c.inverse_tau, s = z - c.rho * w;
+    const double g = s * s < 1 ? c.tau * (1 - s) * (1 + s) : 0, slope = 1 / (c.rho + g);
+    return {w, s, slope, g * slope};
+  }
+  return {z * c.inverse, 0, c.inverse, 0};
+}
 
 }  // namespace zspring

@@ -33,7 +33,8 @@ Boundary Simulation::initial_boundary(const Inputs& u) const {
 MechanicalState Simulation::at_rest(const Inputs& inputs) const {
   MechanicalState s;
   s.q = mechanics_.rest;
-  if (const auto head = mechanics_.head_response(s.q)) s.internal = mechanics_.spring_force(s.q, *head);
+  ElementResponse head;
+  if (mechanics_.head_response(s.q, head)) s.internal = mechanics_.spring_force(s.q, head);
   s.boundary = initial_boundary(inputs);
   s.contact_force = hht_.head_imposed() ? hht_.reaction(s.boundary, s.internal) : hht_.contact(s.boundary, 0, 0).force;
   s.a = hht_.acceleration(s);

@@ -21,8 +21,11 @@ MechanicalState Hht::step_variation(const MechanicalState& from, const Mechanica
   Trial t;
   t.x = to.a;
   t.v = to.v;
-  joints(t.x) = c.rho.cwiseProduct(joints(to.v)) + to.s;
-  evaluate(c, from, b1, false, t);
+  for (int j = 0; j < 2; ++j) t.x[joint_dof[j]] = c.joint[j].rho * to.v[joint_dof[j]] + to.s[j];
+  predict(c, from, t);
+  (this->*variant_->evaluate)(c, b1, t);
+  Matrix4 tangent;
+  m_.head_tangent(t.head, tangent);
 
   // With the unknowns held: the part of the variation that the old state brings.
   MechanicalState d;
@@ -41,7 +44,7 @@ MechanicalState Hht::step_variation(const MechanicalState& from, const Mechanica
   }
 
   Vector5 old = dfrom.internal - on_masses(db0.uplift);
-  Vector5 now = m_.spring_force_change(t.head_tangent, d.q) + m_.damping_force(d.v) - on_masses(db1.uplift);
+  Vector5 now = m_.spring_force_change(tangent, d.q) + m_.damping_force(d.v) - on_masses(db1.uplift);
   if (!imposed) {
     const bool closed = contact(b0, from.q[U1], from.v[U1]).closed;
     old[U1] += head_force_change(p, closed, db0, dfrom.q[U1], dfrom.v[U1]);
@@ -49,7 +52,7 @@ MechanicalState Hht::step_variation(const MechanicalState& from, const Mechanica
   }
   Vector5 x = m_.mass.cwiseProduct(d.a) + c.weight * now - c.hht_alpha * old;
   if (imposed) x[U1] = 0;
-  solve(c, t, x);
+  (this->*variant_->solve)(c, t, x);
 
   for (int i : mass_dof) {
     if (i == U1 && imposed) continue;
@@ -67,7 +70,7 @@ MechanicalState Hht::step_variation(const MechanicalState& from, const Mechanica
   d.a_slope = tells_slope(h, from.h) ? Vector5((d.a - dfrom.a) / h) : dfrom.a_slope;
   for (int j = 0; j < 2; ++j)
     if (t.angle_slope[j] == 0) d.a[joint_dof[j]] = d.a_slope[joint_dof[j]] = 0;
-  d.internal = m_.spring_force_change(t.head_tangent, d.q) + m_.damping_force(d.v);
+  d.internal = m_.spring_force_change(tangent, d.q) + m_.damping_force(d.v);
   joints(d.internal) += m_.moment_bound.cwiseProduct(d.s);
   d.contact_force = imposed ? reaction(db1, d.internal) : head_force_change(p, t.contact.closed, db1, d.q[U1], d.v[U1]);
   d.boundary = db1;

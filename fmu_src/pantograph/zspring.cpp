@@ -5,28 +5,6 @@
 #include "common/failure.hpp"
 
 namespace zspring {
-std::optional<ElementResponse> zspring_response(const ZSpringParameters& z, double alpha, double beta, double gap) {
-  const double sin_a = std::sin(alpha), cos_a = std::cos(alpha), sin_b = std::sin(beta), cos_b = std::cos(beta);
-  const double A = z.L1 * cos_a + z.L2 * cos_b - z.d;
-  const double B = gap - z.L1 * sin_a - z.L2 * sin_b;
-  const double length = std::sqrt(A * A + B * B);
-  std::optional<ElementResponse> result;
-  if (!(length > shortest_length)) return result;  // also NaN
-  ElementResponse& out = result.emplace();
-  const double ex = A / length, ey = B / length;  // unit vector along the spring
-  const double T = out.tension = z.k * (length - z.l0);
-  const Vector4 n(-ey, -z.L1 * (ex * sin_a + ey * cos_a), -z.L2 * (ex * sin_b + ey * cos_b), ey);
-  const Vector4 p(-ex, z.L1 * (ey * sin_a - ex * cos_a), z.L2 * (ey * sin_b - ex * cos_b), ex);
-  out.gradient = n;
-  out.length = length;
-  out.energy = 0.5 * z.k * (length - z.l0) * (length - z.l0);
-  out.force = T * n;
-  out.tangent.noalias() = (z.k * n) * n.transpose();
-  out.tangent.noalias() += (T / length * p) * p.transpose();
-  out.tangent(1, 1) += T * z.L1 * (ey * sin_a - ex * cos_a);
-  out.tangent(2, 2) += T * z.L2 * (ey * sin_b - ex * cos_b);
-  return result;
-}
 
 StaticState zspring_static_state(const ZSpringParameters& z, double load) {
   // In t = tan(theta) >= 0 the left side grows without bound from the first t where the spring is in tension,

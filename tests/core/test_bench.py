@@ -53,6 +53,18 @@ def test_the_imposed_motion_is_the_sine_asked_for(pantograph):
     np.testing.assert_allclose(history[:, 2], -(omega**2) * history[:, 0], atol=1e-6 * ACCELERATION)
 
 
+def test_the_motion_is_on_the_sine_at_every_step_from_the_end_of_the_ramp_on(pantograph):
+    """At many frequencies: rounding puts the ramp's end before, on or behind the step that ends it."""
+    for frequency in np.arange(2.0, 22.0, 0.25):
+        p = pantograph({"drive": "Bench", "bench.frequency": frequency, "bench.acceleration": ACCELERATION})
+        count = int(p["bench.steps_per_period"])
+        step = 1 / (frequency * count)
+        p.run(step, count - 1, [])
+        rows = p.run(step, 3 * count, ["head.z"])[:, 0]
+        sine = ACCELERATION / (2 * np.pi * frequency) ** 2 * np.sin(2 * np.pi * np.arange(3 * count) / count)
+        np.testing.assert_allclose(rows, sine, rtol=0, atol=1e-12, err_msg=f"{frequency} Hz")
+
+
 @pytest.mark.parametrize("frequency, acceleration", [(9.0, 2.0), (4.0, 8.0), (1.5, 0.3), (4.0, 0.0)])
 def test_retuning_is_continuous_in_phase(pantograph, frequency, acceleration):
     """Position and velocity never jump: both follow from a bounded acceleration, from the very start."""

@@ -12,18 +12,24 @@ extern "C" {
 // spring has no direction.
 int probe_zspring(const double parameters[5], const double coordinates[3], double out[21]) {
   const ZSpringParameters z{parameters[0], parameters[1], parameters[2], parameters[3], parameters[4], 0, 0, 0, 1};
-  const std::optional<ElementResponse> r = zspring_response(z, coordinates[0], coordinates[1], coordinates[2]);
-  if (!r) return 0;
-  *out++ = r->energy;
-  for (int i = 0; i < 4; ++i) *out++ = r->force[i];
+  ElementResponse r;
+  const RodDirections rods = RodsNear(coordinates[1]).at(coordinates[0], coordinates[1]);
+  if (!zspring_response(z, rods, coordinates[2], r)) return 0;
+  Matrix4 tangent;
+  zspring_tangent(z, r, tangent);
+  *out++ = r.energy;
+  for (int i = 0; i < 4; ++i) *out++ = r.force[i];
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) *out++ = r->tangent(i, j);
+    for (int j = 0; j < 4; ++j) *out++ = tangent(i, j);
   return 1;
 }
 
 // law: 0 free, 1 tanh, 2 Coulomb, 3 locked; out: w, s, dw/dz, ds/dz.
 void probe_resolvent(int law, double rho, double tau, double z, double w_guess, double out[4]) {
-  const Resolvent r = resolvent(static_cast<FrictionLaw>(law), rho, tau, z, w_guess);
+  const decltype(&resolvent<FrictionLaw::Free>) laws[] = {resolvent<FrictionLaw::Free>, resolvent<FrictionLaw::Tanh>,
+                                                          resolvent<FrictionLaw::Coulomb>,
+                                                          resolvent<FrictionLaw::Locked>};
+  const Resolvent r = laws[law]({rho, tau}, z, w_guess);
   out[0] = r.w;
   out[1] = r.s;
   out[2] = r.dw_dz;
