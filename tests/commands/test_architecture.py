@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -51,6 +53,15 @@ def part(module: str) -> str:
 def test_there_is_no_circle_of_imports():
     assert len(GRAPH) > 80
     TopologicalSorter({name: needed - {"zspring"} for name, needed in GRAPH.items()}).prepare()
+
+
+@pytest.mark.parametrize("module", ["cli", "couple.run", "line.run", "en50318.workers"])
+def test_slow_libraries_wait_until_they_are_needed(module):
+    """Half a second each, of a command whose run takes a fraction of that, and of each of its processes."""
+    slow = ["scipy.signal", "matplotlib", "pint"]
+    told = f"import sys, zspring.{module}; print([name for name in {slow} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", told], check=True, capture_output=True, text=True)
+    assert done.stdout.strip() == "[]"
 
 
 @pytest.mark.parametrize("module", sorted(GRAPH))

@@ -51,12 +51,12 @@ def test_the_reference_runs_are_the_cases_of_the_edition(references):
             and run.pantograph["solver.step"] == 5e-4
             and run.line["contact_wire.tension"] == 20000
         )
-        assert (run.uplift, run.step, run.scheme, run.start_up, run.start) == (0, 1e-3, "implicit", "ramp", None)
+        assert (run.uplift, run.step, run.scheme, run.start_up, run.start) == (0, 1e-3, "sequential", "ramp", None)
     assert [run.series for run in references] == [f"en-50318-2002-{v}-km-h.csv" for v in (250, 300)]
 
 
-def test_each_choice_changes_what_it_names_and_nothing_else(references):
-    runs = sensitivity_runs(references)
+def test_each_choice_changes_what_it_names_and_nothing_else_and_stops_behind_what_is_evaluated(fmus, references):
+    runs = sensitivity_runs(references, fmus[0])
     assert len(runs) == 2 * len(CHOICES) == len({run.key for run in runs})
     named = ("group", "label", "of", "series")
     for reference, own in ((references[0], runs[: len(CHOICES)]), (references[1], runs[len(CHOICES) :])):
@@ -73,7 +73,8 @@ def test_each_choice_changes_what_it_names_and_nothing_else(references):
                 assert getattr(run, name) == value != getattr(reference, name)
             spans = choice.spans or (5, 6)
             assert run.section == Section(*spans, 60.0)
-            left = {name: getattr(reference, name) for name in (*named, "line", "section", *choice.run)}
+            assert run.stop == pytest.approx(spans[1] * 60.0 + 0.4 * reference.speed / 3.6)
+            left = {name: getattr(reference, name) for name in (*named, "line", "section", "stop", *choice.run)}
             assert replace(run, **left) == reference
 
 

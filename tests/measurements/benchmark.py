@@ -5,29 +5,37 @@ The pantograph over the standard figure; the catenary, alone and coupled, on its
 Every point is run from rest through one communication step of 30 periods, a fixed amount of work, unlike
 `zspring frf`, which stops where the response is steady. Times are minima over a few rounds in which the variants
 take turns, so that a busy machine hurts all of them alike; their ratios say more than their values.
+
+    scripts/benchmark --against FILE.fmu
+
+compares with an older FMU instead, in pairs of runs: how many times faster, and how far apart the results are.
 """
 
 from __future__ import annotations
 
 import subprocess
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
+from pathlib import Path
 
 import click
 import numpy as np
 from tqdm import tqdm
 
 from probe import probe_folder
-from zspring.bench.fixed_work import PERIODS, figure_points, run_points
+from zspring.bench.fixed_work import PERIODS, Work, figure_points, run_points
 from zspring.bench.measure import FrfSettings
 from zspring.fmu import CATENARY, Fmu, Instance, installed_fmu
 from zspring.line.journey import Journey
 from zspring.line.run import run_line
 from zspring.line.schemes import Coupling
 from zspring.line.system import System
+from zspring.variables import Value
 
 ROUNDS = 5
+SPEED = 250 / 3.6  # m/s
+LAWS = ("Regularized", "Coulomb")
 POINTS = figure_points(FrfSettings())
 
 
@@ -93,7 +101,7 @@ def newton(instance: Instance) -> None:
 def accuracy(instance: Instance, reference_step: float) -> None:
     print(f"\nAccuracy of |H|, in %, and of the phase, in rad, against a step of {1e3 * reference_step:g} ms")
     print("law          step      median     worst   at                    phase, worst")
-    for law in ("Regularized", "Coulomb"):
+    for law in LAWS:
         exact, *_ = run(instance, [f"friction={law}", f"solver.step={reference_step}"])
         for step in (2e-3, 1e-3, 5e-4):
             H, *_ = run(instance, [f"friction={law}", f"solver.step={step}"])
@@ -106,35 +114,70 @@ def accuracy(instance: Instance, reference_step: float) -> None:
 
 
 def line(pantograph: Fmu) -> None:
-    speed = 250 / 3.6  # m/s
     with Fmu(installed_fmu(CATENARY)) as catenary:
         print(f"\nLine: steps of 1 ms at 250 km/h, one core, best of {ROUNDS}")
         print("spans        through fmpy, us a step   a span")
         lengths = (5, 10, 20, 40)
-        times = {spans: [step_of_the_line(catenary, spans, speed) for _ in range(ROUNDS)] for spans in lengths}
+        times = {spans: [step_of_the_line(catenary, {"line.spans": spans}) for _ in range(ROUNDS)] for spans in lengths}
         for spans, taken in times.items():
             print(f"{spans:<11}  {1e6 * min(taken):>24.1f}   {1e6 * min(taken) / spans:>6.2f}")
         print("coupling     times faster than real time")
         for scheme in ("explicit", "sequential", "parallel", "implicit"):
-            system = System(catenary, pantograph, {}, [{}], Journey(speed), Coupling(scheme))
+            system = System(catenary, pantograph, {}, [{}], Journey(SPEED), Coupling(scheme))
             runs = [run_line(system) for _ in range(ROUNDS)]
             print(f"{scheme:<11}  {runs[0].time[-1] / min(run.elapsed for run in runs):>27.1f}")
 
 
-def step_of_the_line(catenary: Fmu, spans: int, speed: float, steps: int = 1000) -> float:
-    """Seconds a step of 1 ms takes, for a line of that many spans under a moving force."""
+def step_of_the_line(catenary: Fmu, parameters: Mapping[str, Value], steps: int = 1000) -> float:
+    """Seconds a step of 1 ms takes, under a moving force."""
     with catenary.instances() as (instance,):
-        instance.start({"line.spans": spans}, {"pantograph[1].force": 120, "pantograph[1].speed": speed})
+        instance.start(parameters, {"pantograph[1].force": 120, "pantograph[1].speed": SPEED})
         begin = time.perf_counter()
         for i in range(steps):
             instance.step(i * 1e-3, 1e-3)
         return (time.perf_counter() - begin) / steps
 
 
+def against(older: Fmu) -> None:
+    """Pairs of runs of the older FMU and of this one."""
+    model = older.description.coSimulation.modelIdentifier
+    with Fmu(installed_fmu(model)) as newer:
+        print(f"{older.identity['FMU']}, GUID {older.identity['GUID']}, against this clone's: {ROUNDS} pairs in turn")
+        if model == CATENARY:
+            for spans in (5, 10, 20, 40):
+                pairs = [
+                    [step_of_the_line(fmu, {"line.spans": spans}) for fmu in (older, newer)] for _ in range(ROUNDS)
+                ]
+                print(f"step of 1 ms, {spans:>2} spans       {faster(pairs)}")
+            return
+        for law in LAWS:
+            works = [[work_of(fmu, [f"friction={law}"]) for fmu in (older, newer)] for _ in range(ROUNDS)]
+            pairs = [[work.seconds.sum() for work in pair] for pair in works]
+            before, now = (work.H for work in works[0])
+            apart = np.abs(now / before - 1).max()
+            print(f"standard figure, {law:<12} {faster(pairs)}, |H| apart by at most {apart:.1e}")
+
+
+def faster(pairs: Sequence[Sequence[float]]) -> str:
+    """How many times faster the second of each pair was, in words."""
+    ratios = np.array([older / newer for older, newer in pairs])
+    return f"{np.median(ratios):.2f} times faster ({ratios.min():.2f} to {ratios.max():.2f})"
+
+
+def work_of(fmu: Fmu, settings: Iterable[str]) -> Work:
+    with fmu.instances() as (instance,):
+        return run_points(instance, instance.variables.parse_assignments(settings), POINTS)
+
+
 @click.command()
 @click.option("--reference-step", default=5e-5, show_default=True, help="s, of the solution taken as exact.")
-def main(reference_step: float) -> None:
+@click.option("--against", "older", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="An older FMU.")
+def main(reference_step: float, older: Path | None) -> None:
     """Print speed, Newton's work and accuracy over the standard figure, and the speed of the line."""
+    if older:
+        with Fmu(older) as fmu:
+            against(fmu)
+        return
     with Fmu() as fmu, fmu.instances() as (instance,):
         speed(instance)
         newton(instance)

@@ -10,7 +10,6 @@ from pathlib import Path
 from tqdm import tqdm
 
 from ..errors import ZSpringError, tell
-from ..figures import save
 from ..heads import synthetic_note
 from ..interrupt import Interrupted
 from ..line.limits import near_wave_speed, of_series, untold_supports
@@ -24,7 +23,6 @@ from ..records import keep_others
 from ..tables import read_rows, replaced, write_table
 from ..variables import Value
 from .compare import STEPS, compare_steps, compared, comparison_table
-from .plot import comparison_figure, line_figure
 from .report import sections, summary
 from .ssp import write_ssp
 
@@ -112,6 +110,9 @@ def run_and_write(
         filtered = None
         print(f"no statistics: {error}")
     tell(remarks, path)
+    from ..figures import save  # matplotlib is slow to load: not before the run
+    from .plot import line_figure
+
     save(line_figure(result, filtered, _title(result, system, what)), written[-1])
     duration = result.time[-1]
     print(
@@ -160,6 +161,9 @@ def compare_and_write(system: System, folder: Path, suffix: str, what: str = "")
     print(*comparison_table(rows), sep="\n")
     if stopped:
         raise type(stopped)(f"{stopped}; the rows so far are kept in {paths[0]}")
+    from ..figures import save  # matplotlib is slow to load: not before the runs
+    from .plot import comparison_figure
+
     save(comparison_figure(rows, f"Coupling at {speed}; {what}"), paths[1])
     print("written:", *paths)
 

@@ -44,7 +44,7 @@ class Run:
     uplift: float = 0.0  # N, extra force on the upper frame; with a mean force, what the search for it begins with
     mean_force: float | None = None  # N, over the section, for which the uplift is chosen
     step: float = 1e-3  # s
-    scheme: str = "implicit"
+    scheme: str = "sequential"
     start_up: str = "ramp"
     start: float | None = None  # m along the line; None: half a span
     stop: float | None = None  # m; None: half a span before the end
@@ -121,8 +121,8 @@ def reference_runs(edition: Edition, catenary: Fmu, pantograph: Fmu) -> list[Run
     return [_run_of(edition, case, catenary, pantograph) for case in edition.cases]
 
 
-def sensitivity_runs(references: Sequence[Run]) -> list[Run]:
-    """Each reference run with each other choice."""
+def sensitivity_runs(references: Sequence[Run], catenary: Fmu) -> list[Run]:
+    """Each reference run with each other choice, no further than what is evaluated."""
     runs = []
     for run in references:
         for choice in CHOICES:
@@ -131,7 +131,8 @@ def sensitivity_runs(references: Sequence[Run]) -> list[Run]:
             if choice.spans:
                 first, last = choice.spans
                 changed = replace(changed, section=replace(run.section, first=first, last=last))
-            runs.append(changed)
+            extent = LineExtent.of(catenary, changed.line)
+            runs.append(replace(changed, stop=_stop(changed.section, changed.speed, extent)))
     return runs
 
 
@@ -147,7 +148,7 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
     runs = []
     for speed in speeds:
         section = _head_section(speed, extent, fastest(catenary, line))
-        stop = min(section.bounds[1] + RUN_OUT * speed / 3.6, extent.length)
+        stop = _stop(section, speed, extent)
         for head in HEADS:
             parameters = _pantograph(head.pantograph, pantograph)
             parameters |= {key: parse(pantograph.variables[key], text) for key, text in head.given.items()}
@@ -160,6 +161,11 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
                 series = f"{slug(head.label)}-{speed:g}-km-h.csv" if is_kept else ""
                 runs.append(replace(run, start=i * extent.span / STARTS, stop=stop, series=series))
     return runs
+
+
+def _stop(section: Section, speed: float, extent: LineExtent) -> float:
+    """Where a run at `speed` km/h may stop, m: its filter has run out."""
+    return min(section.bounds[1] + RUN_OUT * speed / 3.6, extent.length)
 
 
 def _head_section(speed: float, extent: LineExtent, wave: float) -> Section:

@@ -51,7 +51,7 @@ def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int
 def _validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int, record: Record[Finished]) -> None:
     references = [reference_runs(edition, catenary, pantograph) for edition in plan.editions]
     own = [plan.own.runs(each) for each in references] if plan.own else []
-    sensitivity = sensitivity_runs(references[0]) if plan.with_sensitivity else []
+    sensitivity = sensitivity_runs(references[0], catenary) if plan.with_sensitivity else []
     heads = head_runs(catenary, pantograph, plan.head_speeds) if plan.head_speeds else []
     runs = [*(run for each in (*references, *own) for run in each), *sensitivity, *heads]
     speed = _run_missing(record, runs, catenary, pantograph, folder, jobs)

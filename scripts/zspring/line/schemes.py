@@ -66,9 +66,9 @@ class Mapped:
         begin = self.forces
         self.forces = [
             pantograph.meet(time, size, free - shift, compliance, previous)
-            for pantograph, free, compliance, previous, shift in zip(self._pantographs, *self._wire.maps(), shifts)
+            for pantograph, (free, compliance, previous), shift in zip(self._pantographs, self._wire.maps(), shifts)
         ]
-        self._wire.step(time, size, begin if self._parallel else self.forces)
+        self._wire.step_unseen(time, size, begin if self._parallel else self.forces)
 
 
 class Jacobi:

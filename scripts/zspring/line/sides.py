@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from ctypes import Array, c_double
 
 from .calls import Jacobian, PreparedCalls
@@ -25,7 +25,7 @@ class Wire:
         self.steps = 0  # made, those that were taken back included
         self._forces = calls.reals(names("force"))
         self._motion = calls.reals(names("wire_height") + names("wire_velocity"))
-        self._maps = [calls.reals(names(part)) for part in ("free_height", "compliance", "compliance_previous")]
+        self._map = calls.reals(names("free_height") + names("compliance") + names("compliance_previous"))
         self._compliance = Jacobian(calls, names("wire_height"), names("force"))
         self.look()
 
@@ -36,16 +36,21 @@ class Wire:
         self.velocities = motion[self._count :]
 
     def step(self, time: float, size: float, forces: Sequence[float]) -> None:
-        """One step at whose end the contact forces, N, are these."""
+        """One step at whose end the contact forces, N, are these; looks at where the wire then is."""
+        self.step_unseen(time, size, forces)
+        self.look()
+
+    def step_unseen(self, time: float, size: float, forces: Sequence[float]) -> None:
         self._forces.set(forces)
         self._step(time, size)
         self.steps += 1
-        self.look()
 
-    def maps(self) -> tuple[list[float], Array[c_double], Array[c_double]]:
-        """Heights at the end of the next step without force there, m; by the forces at its end and begin, m/N."""
-        free, compliance, previous = (part.get() for part in self._maps)
-        return [height + datum for height, datum in zip(free, self._datum)], compliance, previous
+    def maps(self) -> Iterator[tuple[float, float, float]]:
+        """Of each pantograph's wire at the end of the next step: height without force, m, and by the forces then and
+        at the begin, m/N."""
+        values, count = self._map.get(), self._count
+        for i, datum in enumerate(self._datum):
+            yield values[i] + datum, values[count + i], values[2 * count + i]
 
     def compliance(self) -> list[Array[c_double]]:
         """Heights at the end of the last step by the forces there, m/N: [i][j] is height j by force i."""

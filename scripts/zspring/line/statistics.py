@@ -15,7 +15,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from ..errors import ZSpringError
 from .series import BAND, Series
@@ -78,6 +77,8 @@ def low_pass(series: np.ndarray, step: float, cutoff: float = BAND, order: int =
     if series.shape[0] * step < 5 / cutoff:
         raise ZSpringError(f"{series.shape[0] * step:g} s are too short for {cutoff:g} Hz: at least {5 / cutoff:g} s")
     continued = min(series.shape[0] - 1, round(SETTLING / step))
+    from scipy.signal import butter, sosfiltfilt  # slow to load
+
     return sosfiltfilt(butter(order, cutoff, fs=1 / step, output="sos"), series, axis=0, padlen=continued)
 
 
