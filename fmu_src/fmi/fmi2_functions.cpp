@@ -103,10 +103,11 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
       instance->log.write(fmi2Error, Category::logStatusError, reason);
       return nullptr;
     };
-    if (!guid || std::strcmp(guid, ZSPRING_GUID) != 0)
-      return fail(text("fmuGUID = %s: must be " ZSPRING_GUID
-                       "; modelDescription.xml and library are not from the same FMU",
-                       guid ? guid : "NULL"));
+    try {
+      instance->begin_as(Origin::of(guid));
+    } catch (const Refusal& e) {
+      return fail(text("%s", e.what()));
+    }
     if (type != fmi2CoSimulation) return fail(text("fmuType: this FMU is for co-simulation only"));
     if (!named) return fail(text("instanceName: must not be empty"));
     return instance.release();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace zspring::fmi {
 namespace {
@@ -37,7 +38,8 @@ void check_value(const Variable& v, double x) {
 const Variable& Instance::variable(unsigned reference, Type type) const {
   if (reference >= variable_count) refuse("value reference %u: must be below %u", reference, variable_count);
   const Variable& v = variables[reference];
-  if (!same_type(v.type, type)) refuse("%s: is of type %s, not %s", v.name, type_name(v.type), type_name(type));
+  if (!same_type(origin_.reals ? Type::Real : v.type, type))
+    refuse("%s: is of type %s, not %s", v.name, type_name(v.type), type_name(type));
   return v;
 }
 
@@ -46,10 +48,16 @@ void Instance::reset() {
   inputs_ = {};
   for (unsigned i = 0; i < variable_count; ++i)
     if (!variables[i].is_calculated()) set(i, variables[i].start);
+  for (const auto& [reference, value] : origin_.starts) set(reference, value);
   stop_ = never;
   time_ = 0;
   stepped_ = doubted_ = false;
   forget_discard();
+}
+
+void Instance::begin_as(Origin origin) {
+  origin_ = std::move(origin);
+  reset();
 }
 
 void Instance::setup_experiment(double start, bool has_stop, double stop) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "log.hpp"
+#include "origin.hpp"
 #include "state_machine.hpp"
 #include "states.hpp"
 #include "variables.hpp"
@@ -25,6 +26,7 @@ class Instance {
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
+  void begin_as(Origin origin);
   void setup_experiment(double start, bool has_stop, double stop);
   void enter_initialization() { phase = Initialization; }
   void exit_initialization() { simulation(), phase = StepComplete; }
@@ -66,6 +68,7 @@ class Instance {
   template <class Visitor>
   bool visit_values(Visitor&& f);
 
+  Origin origin_;
   Parameters parameters_;
   Inputs inputs_;
   double stop_;  // s

@@ -137,6 +137,14 @@ parameters_option = option(
     help="Set the parameters of a pantograph: the name of a set (`zspring info --sets` lists them) or an "
     "SSV file of SSP; FILE#PREFIX reads those whose names begin with PREFIX and a dot. --set goes before it.",
 )
+line_option = option(
+    "--line",
+    "line_set",
+    kind=str,
+    metavar="NAME|FILE",
+    help="Set the parameters of the line: the name of a set (`zspring info --sets` lists them) or an SSV file "
+    "of SSP 1.0.  [default: the catenary FMU's own, EN 50318:2002]",
+)
 
 
 def data_sets_option(name: str):
@@ -231,11 +239,13 @@ def chosen_parameters(
     assignments: Iterable[str],
     but_not: Sequence[str] = (),
     kind: str = PANTOGRAPHS,
+    settable: Sequence[str] = ("parameter",),
 ) -> dict[str, Value]:
     """Parameters of the FMU from --parameters and --set.
 
     but_not     parameters that the command sets itself: passed over in a set, refused in an assignment
     kind        of the sets in the package
+    settable    what assignments may set, inputs perhaps
     """
     values = chosen_set(parameter_set, fmu, kind, but_not) if parameter_set else {}
-    return {**values, **fmu.variables.parse_assignments(assignments, but_not)}
+    return {**values, **fmu.variables.parse_assignments(assignments, but_not, settable)}

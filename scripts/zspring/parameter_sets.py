@@ -126,7 +126,7 @@ def read_set(path: Path, fmu: Fmu, prefix: str = "") -> dict[str, Value]:
                 continue
             if not prefix:
                 _look_for_prefix(path, name, fmu)
-            values[name] = _value(fmu, fmu.variables.parameter(name), element, units)
+            values[name] = _value(fmu, fmu.variables.settable(name), element, units)
         if not values:
             but = f" but inputs: {', '.join(inputs)}" if inputs else ""
             raise ZSpringError(f"no parameter whose name begins with {prefix}." if prefix else f"has no parameter{but}")

@@ -30,18 +30,22 @@ class Variables:
         """Names of the variables with one of these causalities."""
         return [variable.name for variable in self if variable.causality in causalities]
 
-    def parameter(self, name: str) -> ScalarVariable:
-        """The parameter of that name. Raises ZSpringError if it is none."""
-        known = self.names("parameter")
+    def settable(self, name: str, kinds: Sequence[str] = ("parameter",)) -> ScalarVariable:
+        """The parameter, or what else is among the kinds, of that name. Raises ZSpringError if it is none."""
+        known = self.names(*kinds)
         if name not in known:
+            what = " or ".join(kinds)
             if name in self._by_name:
-                raise ZSpringError(f"{name} is not a parameter but {self._by_name[name].causality}")
-            raise ZSpringError(f"no parameter {name!r} in the FMU{did_you_mean(name, known)}")
+                raise ZSpringError(f"{name} is not a {what} but {self._by_name[name].causality}")
+            raise ZSpringError(f"no {what} {name!r} in the FMU{did_you_mean(name, known)}")
         return self._by_name[name]
 
-    def parse_assignments(self, assignments: Iterable[str], but_not: Sequence[str] = ()) -> dict[str, Value]:
+    def parse_assignments(
+        self, assignments: Iterable[str], but_not: Sequence[str] = (), kinds: Sequence[str] = ("parameter",)
+    ) -> dict[str, Value]:
         """Parameter values from texts NAME=VALUE, VALUE a number or the name of an enumeration's item.
 
+        kinds       of variables that can be set, "input" perhaps
         Bounds are left to the FMU. Raises ZSpringError for an unknown name, one that is in `but_not`, or a
         value of the wrong type.
         """
@@ -50,7 +54,7 @@ class Variables:
             name, equals, text = (part.strip() for part in assignment.partition("="))
             if not equals:
                 raise ZSpringError(f"{assignment!r}: must be NAME=VALUE, for example zspring.Mf=0.5")
-            values[name] = parse(self.parameter(name), text)
+            values[name] = parse(self.settable(name, kinds), text)
             if name in but_not:
                 raise ZSpringError(f"{assignment}: the measurement itself sets {', '.join(but_not)}")
         return values

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import read_model_description, simulate_fmu
+from fmpy import simulate_fmu
 from pathsim import Connection, Simulation
 from pathsim.blocks import Scope, Source
 from pathsim_fmi import CoSimulationFMU
@@ -21,6 +21,7 @@ from pathsim_fmi import CoSimulationFMU
 from client_runs import RUNS, Run
 from zspring import export
 from zspring.errors import ZSpringError
+from zspring.exported_fmu import Copy, flat_names
 from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
 
 each_run = pytest.mark.parametrize("run", RUNS.values(), ids=RUNS)
@@ -59,19 +60,9 @@ def test_fmutool_finds_nothing_to_complain_of(any_fmu):
     assert "WARNING" not in said and "ERROR" not in said
 
 
-def real_outputs_only(path: str, folder: Path) -> str:
-    """A copy of an FMU without its Integer and Boolean outputs, made by fmutool."""
-    variables = read_model_description(path).modelVariables
-    others = [re.escape(v.name) for v in variables if v.causality == "output" and v.type != "Real"]
-    folder.mkdir()
-    copy = str(folder / Path(path).name)
-    fmutool("-input", path, "-output", copy, "-remove-regexp", f"({'|'.join(others)})$")
-    return copy
-
-
-def plain(run: Run, folder: Path) -> str:
-    """A copy of an FMU whose enumerations are Integers, for tools that cannot set enumerations."""
-    subprocess.run([Path(sys.executable).with_name("zspring"), "export", "--plain", folder], check=True)
+def exported(run: Run, how: str, folder: Path) -> str:
+    """A copy of an FMU for tools that cannot set enumerations."""
+    subprocess.run([Path(sys.executable).with_name("zspring"), "export", how, folder], check=True)
     return str(folder / f"{run.model}.fmu")
 
 
@@ -81,16 +72,19 @@ def test_pathsim_simulates(run: Run, tmp_path):
 
     pathsim-fmi cannot set enumerations and reads all outputs as Reals.
     """
-    path = real_outputs_only(plain(run, tmp_path), tmp_path / "real")
-    block = CoSimulationFMU(path, start_values=dict(run.parameters), dt=run.step)
+    path = exported(run, "--flat", tmp_path)
+    with Fmu(installed_fmu(run.model)) as fmu:
+        flat = dict(zip((v.name for v in fmu.variables), flat_names(fmu)))
+    parameters = {flat[name]: float(value) for name, value in run.parameters.items()}
+    block = CoSimulationFMU(path, start_values=parameters, dt=run.step)
     scope = Scope()
     blocks, connections = [block, scope], []
     for name, values in run.inputs.items():
         source = Source(lambda t, values=values: values[min(round(t / run.step), len(values) - 1)])
         blocks.append(source)
-        connections.append(Connection(source, block[name]))
+        connections.append(Connection(source, block[flat[name]]))
     for n, name in enumerate(run.outputs):
-        connections.append(Connection(block[name], scope[n]))
+        connections.append(Connection(block[flat[name]], scope[n]))
     simulation = Simulation(blocks, connections, dt=run.step, log=False)
     simulation.run((len(run.time) - 1) * run.step)
     _, columns = scope.read()
@@ -106,7 +100,7 @@ def test_ecos_simulates(run: Run, tmp_path):
 
     rows = []
     with EcosSimulationStructure() as structure:
-        structure.add_model("model", plain(run, tmp_path))
+        structure.add_model("model", exported(run, "--plain", tmp_path))
         structure.add_parameter_set("start", {f"model::{k}": value for k, value in run.parameters.items()})
         with EcosSimulation(structure=structure, step_size=run.step) as simulation:
             simulation.init(parameter_set="start")
@@ -133,11 +127,11 @@ def test_the_package_is_never_exported_into_itself(tmp_path, monkeypatch, option
 
 
 def test_an_export_that_fails_keeps_the_file_there(tmp_path, monkeypatch):
-    def fail(fmu: Fmu, path: Path) -> None:
+    def fail(copy: Copy, fmu: Fmu, path: Path) -> None:
         path.write_bytes(b"half")
         raise OSError("disk full")
 
-    monkeypatch.setattr(export, "copy_without_enumerations", fail)
+    monkeypatch.setattr(Copy, "write", fail)
     (tmp_path / "ZSpringPantograph.fmu").write_bytes(b"whole")
     with pytest.raises(OSError, match="disk full"):
         export.export.main(["--plain", str(tmp_path)], standalone_mode=False)

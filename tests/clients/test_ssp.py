@@ -91,10 +91,12 @@ def test_the_fmus_inside_differ_in_the_type_of_enumerations_alone(exported, tmp_
         with zipfile.ZipFile(copy) as new, zipfile.ZipFile(installed_fmu(copy.stem)) as old:
             assert new.namelist() == old.namelist()
             for entry in old.namelist():
-                before, after = (archive.read(entry).split(b"\n") for archive in (old, new))
-                assert len(before) == len(after)
-                for a, b in zip(before, after):
-                    assert a == b or (b"<Enumeration " in a and b"<Integer " in b)
+                before, after = (archive.read(entry) for archive in (old, new))
+                if entry != "modelDescription.xml":
+                    assert before == after, entry
+                    continue
+                for a, b in zip(*(list(etree.fromstring(text).iter("*")) for text in (before, after)), strict=True):
+                    assert (a.tag, a.attrib) == (b.tag, b.attrib) or (a.tag, b.tag) == ("Enumeration", "Integer")
         integers = {v.name: v for v in read_model_description(str(copy)).modelVariables if v.type == "Integer"}
         assert not [v for v in read_model_description(str(copy)).modelVariables if v.type == "Enumeration"]
         if copy.stem == PANTOGRAPH:

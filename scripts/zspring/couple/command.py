@@ -18,6 +18,7 @@ from ..options import (
     chosen_parameters,
     format_option,
     line_fmu_option,
+    line_option,
     opened,
     option,
     output_option,
@@ -31,14 +32,7 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
 
 @click.command()
 @option("--speed", default=250.0, metavar="V", help="Speed in km/h.")
-@option(
-    "--line",
-    "line_set",
-    kind=str,
-    metavar="NAME|FILE",
-    help="Set the parameters of the line: the name of a set (`zspring info --sets` lists them) or an SSV file "
-    "of SSP 1.0.  [default: the catenary FMU's own, EN 50318:2002]",
-)
+@line_option
 @click.option(
     "--tension", type=float, nargs=2, metavar="CONTACT MESSENGER", help="Tension of contact wire and messenger in N."
 )

@@ -7,10 +7,10 @@ import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
 
+from ..exported_fmu import Copy
 from ..fmu import Fmu
 from ..line.run import LineRun
 from ..parameter_sets import write_set
-from ..plain_fmu import copy_without_enumerations
 
 _SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
 _SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
@@ -39,7 +39,7 @@ def write_ssp(run: LineRun, path: Path) -> None:
         sources, line_fmu, pantograph = {}, run.system.catenary, run.system.pantograph
         for fmu in line_fmu, pantograph:
             copy = Path(folder, fmu.path.name)
-            copy_without_enumerations(fmu, copy)
+            Copy(plain=True).write(fmu, copy)
             sources[fmu] = f"resources/{copy.name}"
             archive.write(copy, sources[fmu])
         system = ET.Element(_tag("System"), name="line", description="Pantographs on an overhead contact line")

@@ -185,7 +185,7 @@ def read_settings(
             _check_free(fmu.variables, name, free)
         for name, tie in settings.tied.items():
             for each in (name, tie.to):
-                if fmu.variables.parameter(each).type != "Real":
+                if fmu.variables.settable(each).type != "Real":
                     raise ZSpringError(f"tied.{name}: {each} is no Real parameter")
         conditions = read_conditions([measurement.path for measurement in settings.measurement], fmu)
         fixed = _fixed(settings, fmu, parameter_set, assignments, conditions)
@@ -194,7 +194,7 @@ def read_settings(
 
 def _check_free(variables: Variables, name: str, free: Free) -> None:
     """Raises ZSpringError if it is no parameter to identify, or if its bounds are not those of the FMU or within."""
-    variable = variables.parameter(name)
+    variable = variables.settable(name)
     if variable.type != "Real" or name in BENCH_PARAMETERS:
         raise ZSpringError(f"free.{name}: must be a Real parameter of the pantograph")
     if variable.min is not None and free.minimum < float(variable.min):

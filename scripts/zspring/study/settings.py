@@ -189,7 +189,7 @@ def read_study(path: Path, fmu: Fmu) -> StudySettings:
 
 def _varied(variables: Variables, name: str, given: Range | list, design: str) -> Range | tuple[Value, ...]:
     """A parameter of [vary]: a range where the design samples it, otherwise values."""
-    is_sampled, is_real = design in SAMPLED, variables.parameter(name).type == "Real"
+    is_sampled, is_real = design in SAMPLED, variables.settable(name).type == "Real"
     if isinstance(given, list):
         if is_sampled:
             needed = "a range { from = ..., to = ... }" if is_real else "design grid or list, as it is no real number"

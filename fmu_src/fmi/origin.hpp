@@ -1,0 +1,23 @@
+// What a copy of the FMU made by `zspring export` begins with. Hosts hand fmuGUID on as the model description has it,
+// so it carries, where the resources' location would depend on the host, what description and library must agree upon:
+//
+//   {GUID}[ reals][ REFERENCE=BITS]...
+//
+// reals: every variable is declared as Real; BITS: the start value of the variable with that value reference, the 16
+// hexadecimal digits of an IEEE double, whatever the host's locale.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+namespace zspring::fmi {
+
+struct Origin {
+  bool reals = false;
+  std::vector<std::pair<unsigned, double>> starts;
+
+  // Throws Refusal where this is no copy of this FMU.
+  static Origin of(const char* guid);
+};
+
+}  // namespace zspring::fmi
