@@ -7,6 +7,7 @@ import re
 import shlex
 import subprocess
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import fmpy
@@ -15,7 +16,12 @@ import pytest
 from pymoca import ast, parser
 
 from paths import ROOT
-from zspring.fmu import Fmu
+from zspring.exported_fmu import Copy
+from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, Instance, installed_fmu
+from zspring.line.journey import Journey
+from zspring.line.run import run_line
+from zspring.line.schemes import Coupling
+from zspring.line.system import System
 
 EXAMPLES = ROOT / "resources" / "examples"
 
@@ -89,3 +95,44 @@ def test_the_modelica_coupling_is_stable_at_its_communication_step():
             forces.append(force)
     assert np.ptp(heads[:2000]) > 0.02
     assert np.ptp(forces[3500:]) < 0.2 * np.ptp(forces[:2000])
+
+
+def test_the_modelica_model_of_both_connects_them_as_if_solved_as_one(tmp_path):
+    """Its modifications and equations, as parsed, carried out on flat FMUs side by side: against implicit coupling."""
+    text = (EXAMPLES / "PantographUnderLine.mo").read_text()
+    model = parser.parse(text).classes["PantographUnderLine"]
+    assert isinstance(model, ast.Class)
+    values = {name: float(value) for name, value in re.findall(r"parameter Real (\w+)\(.*?\) = ([\d.]+)", text)}
+    values["speed"] /= 3.6
+    step, speed = values["step"], values["speed"]
+    assert (step, speed, values["staticForce"]) == (1e-3, 250 / 3.6, 120.0)
+    equations = re.findall(r"^  (\w+)\.(\w+) = (?:(\w+)\.)?(\w+);$", text, re.MULTILINE)
+    assert len(equations) == len(model.equations) == 5
+
+    blocks: dict[str, Instance] = {}
+    with ExitStack() as stack:
+        for block, name in ("catenary", CATENARY), ("pantograph", PANTOGRAPH):
+            with Fmu(installed_fmu(name)) as fmu:
+                Copy(flat=True).write(fmu, tmp_path / f"{name}.fmu")
+            flat = stack.enter_context(Fmu(tmp_path / f"{name}.fmu"))
+            (blocks[block],) = stack.enter_context(flat.instances())
+            (told,) = re.findall(rf"{name}_fmu {block}\((.*?)\);", text, re.DOTALL)
+            given = {key: values.get(value) or float(value) for key, value in re.findall(r"(\w+) = (\w+)", told)}
+            assert given.pop("fmi_CommunicationStepSize") == step
+            blocks[block].start(
+                given, {to: values[of] for at, to, source, of in equations if at == block and not source}
+            )
+        forces = []
+        for n in range(1500):
+            told = [(at, to, blocks[source].get([of])[0]) for at, to, source, of in equations if source]
+            for at, to, value in told:
+                blocks[at].set({to: value})
+            for instance in blocks.values():
+                instance.step(n * step, step)
+            forces += blocks["pantograph"].get(["contact_force_out"])
+
+    with Fmu(installed_fmu(CATENARY)) as wire, Fmu() as head:
+        journey = Journey(speed, 60.0, 60.0 + 1.5 * speed + 0.01, step, start_up="direct")
+        implicit = run_line(System(wire, head, {}, [{}], journey, Coupling("implicit")))
+    np.testing.assert_allclose(forces, implicit.contact_force[1:, 0], rtol=0, atol=1e-5)
+    assert np.ptp(forces) > 50
