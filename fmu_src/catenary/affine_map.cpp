@@ -159,13 +159,13 @@ void Foresight::finish(const CommunicationStep& step, const LineState& from, Lin
 
 // Of what happens at each internal step the bounds hold what is allowed in all.
 void Foresight::bound(const LineState& s, OfForce& v) const {
-  constexpr double tolerance = 1e-9;  // N, m: as exact as the droppers are told slack or taut
+  constexpr double tolerance = 1e-9;  // N, as droppers are told slack or taut
   const Range droppers = droppers_at(line_.mesh, v.on);
   for (int j = droppers.begin; j < droppers.end; ++j) {
     const bool is_slack = s.slack[j] > 0;
     const double stiffness = line_.shape.stiffness[j];
-    const double room =
-        tolerance + (is_slack ? s.slack[j] : line_.shape.tension[j] + stiffness * stretch(line_.mesh, s.u, j));
+    const double room = is_slack ? s.slack[j] + tolerance / stiffness
+                                 : line_.shape.tension[j] + stiffness * stretch(line_.mesh, s.u, j) + tolerance;
     const double change = is_slack ? v.d.slack[j] : stiffness * stretch(line_.mesh, v.d.u, j);
     if (change > 0) v.least = std::max(v.least, -std::max(room, 0.0) / change);
     if (change < 0) v.most = std::min(v.most, -std::max(room, 0.0) / change);

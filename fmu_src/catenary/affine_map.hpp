@@ -12,9 +12,9 @@
 //   Parallel     both step at once: the force input is that at the begin of the line's step. The line corrects the step
 //                before, which it made with a guess, makes this one with a guess, and tells the map of the next.
 //
-// The step that the map is made of, with forces that stay, is the step itself but for the forces that were not known:
-// with these times its variations it need not be made again (superposition), unless a dropper slackens or tightens
-// otherwise, or the pantographs went another way.
+// The step that the map is made of, with forces that stay, is the next step itself but for the forces that were not
+// known. Its variations, times these, added to it, it need not be made again (superposition), unless a dropper slackens
+// or tightens otherwise, or the pantographs went another way.
 //
 // What a force does within a step to the wire over the other pantograph is left out of the map: waves need longer.
 #pragma once

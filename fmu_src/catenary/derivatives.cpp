@@ -55,9 +55,11 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
   const CommunicationStep step(line_, before_.line.passage, held_), change_of(line_, nothing, changed);
   const double n = static_cast<double>(step.internal_steps());
   const StepFactors& factors = hht_.factors(length / n);
+  const bool with_energies = line_.p.solver.energies;
 
-  Variation v = Variation::of_nothing(line_);
+  Variation& v = varied_;
   LineState& d = v.d;
+  v.clear();
   Loads l0 = step.loads(0), dl0 = step.loads_change(change_of, 0);
   Loads none = dl0;
   for (PointLoad& l : none.on) l.value.setZero();
@@ -75,21 +77,24 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
     const Loads l1 = step.loads(k / n * length), dl1 = step.loads_change(change_of, k / n * length);
     if (k < n) {
       if (!hht_.step(factors, l1, now, next)) break;  // not reached: it was solved before
-      hht_.account(factors, l0, l1, now, next);
+      if (with_energies) hht_.account(factors, l0, l1, now, next);
     }
     const LineState& to = k < n ? next : state_.line;
-    const VectorXd old_dv = d.v;
-    d.work -= 0.5 * (dl0.dot(from.u) + dl1.dot(from.u) + l0.dot(d.u) + l1.dot(d.u));
+    if (with_energies) {
+      d.work -= 0.5 * (dl0.dot(from.u) + dl1.dot(from.u) + l0.dot(d.u) + l1.dot(d.u));
+      d.dissipated += 0.5 * factors.h * (d.v.dot(from.damping) + d.v.dot(to.damping));
+    }
     hht_.step_variation(factors, dl1, to, v);
-    d.work += 0.5 * (dl0.dot(to.u) + dl1.dot(to.u) + l0.dot(d.u) + l1.dot(d.u));
-    d.dissipated += 0.5 * factors.h * (old_dv.dot(from.damping + to.damping) + d.v.dot(from.damping + to.damping));
-    d.elastic = d.u.dot(to.internal) - d.u.dot(to.damping) + l1.dot(d.u);
+    if (with_energies) {
+      d.work += 0.5 * (dl0.dot(to.u) + dl1.dot(to.u) + l0.dot(d.u) + l1.dot(d.u));
+      d.dissipated += 0.5 * factors.h * (d.v.dot(from.damping) + d.v.dot(to.damping));
+      d.elastic = d.u.dot(to.internal) - d.u.dot(to.damping) + l1.dot(d.u);
+    }
     if (k < n) std::swap(now, next);
     l0 = l1;
     dl0 = dl1;
   }
-  d.kinetic = hht_.kinetic_change(state_.line, d.v);
-  if (!line_.p.solver.energies) d.kinetic = d.elastic = d.dissipated = d.work = 0;
+  if (with_energies) d.kinetic = hht_.kinetic_change(state_.line, d.v);
   for (int i = 0; i < pantographs; ++i) d.passage[i] = change_of.at(i, length);
   return change(d);
 }

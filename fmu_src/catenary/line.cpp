@@ -25,7 +25,7 @@ LineState LineState::at_rest(const Line& line) {
 void Variation::clear() {
   for (VectorXd* x : {&d.u, &d.v, &d.a, &d.a_slope, &d.internal}) x->segment(4 * on.begin, 4 * on.count()).setZero();
   d.slack.setZero();
-  d.h = 0;
+  d.h = d.kinetic = d.elastic = d.dissipated = d.work = 0;
   on = {0, 0};
 }
 

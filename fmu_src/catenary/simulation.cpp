@@ -12,7 +12,7 @@ Discard no_slack(double time) { return {time, text("no set of slack droppers fit
 }  // namespace
 
 Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
-    : line_(parameters), hht_(line_), foresight_(line_, hht_) {
+    : line_(parameters), hht_(line_), foresight_(line_, hht_), varied_(Variation::of_nothing(line_)) {
   const Parameters& p = line_.p;
   calculated_.line.length = line_.mesh.length();
   calculated_.dropper.static_force_min = line_.shape.tension.size() > 0 ? line_.shape.tension.minCoeff() : 0;

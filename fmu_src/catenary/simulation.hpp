@@ -51,6 +51,7 @@ class Simulation final : public Model<Simulation, Inputs, SimulationState, Held>
   Line line_;
   Hht hht_;
   Foresight foresight_;
+  Variation varied_;                // workspace
   double datum_[pantographs] = {};  // m, of the heights under the pantographs
   Calculated calculated_;
 };
