@@ -1,5 +1,6 @@
 #include "droppers.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
 

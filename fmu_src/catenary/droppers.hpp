@@ -8,7 +8,6 @@
 // (Murty 1974; by blocks, Kostreva 1978, Judice and Pires 1994).
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <optional>
 

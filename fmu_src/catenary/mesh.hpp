@@ -4,10 +4,10 @@
 // line, so every matrix has a narrow band and its Cholesky factor no fill outside of it.
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
 #include <vector>
 
+#include "common/eigen.hpp"
 #include "parameters.hpp"
 
 namespace zspring::catenary {

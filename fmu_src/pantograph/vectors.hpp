@@ -1,10 +1,7 @@
 // Vectors of the pantograph, of a few numbers each.
 #pragma once
 
-// Written one by one and read two at once, numbers must first reach the memory: with vector instructions a step takes
-// half as long again (measured in pairs of runs).
-#define EIGEN_DONT_VECTORIZE
-#include <Eigen/Core>
+#include "common/eigen.hpp"
 
 namespace zspring {
 

@@ -1,8 +1,7 @@
 """The libraries for other platforms run, under wine and qemu, and give the results of the one for linux64.
 
 A small C host (host.c), compiled for each platform, makes the same calls everywhere and prints all outputs to
-the last bit. All operations are the same everywhere, none is contracted, with one exception: on 64-bit ARM Eigen's
-vector code, which the catenary uses, multiplies and adds in one operation with one rounding.
+the last bit. All operations are the same everywhere, none is contracted.
 """
 
 from __future__ import annotations
@@ -10,9 +9,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from platform_runs import RUNS
-
-# Largest difference, in parts of the range of each output.
-FUSED = {("moving load on the catenary", "aarch64-linux"): 1e-9}
 
 
 @pytest.mark.parametrize("name", RUNS)
@@ -26,10 +22,5 @@ def test_runs_are_worth_comparing(run, name):
 @pytest.mark.parametrize("name", RUNS)
 def test_results_as_on_linux64(run, name, platform):
     expected, result = run(name, "linux64"), run(name, platform)
-    if (name, platform) in FUSED:
-        moves = np.ptp(expected, axis=0) > 0
-        difference = np.abs(result - expected)[:, moves] / np.ptp(expected, axis=0)[moves]
-        assert difference.max() <= FUSED[name, platform]
-    else:
-        different = (expected.view("u8") != result.view("u8")).any(axis=1)
-        assert not different.any(), f"other bits in {different.sum()} of {len(different)} steps"
+    different = (expected.view("u8") != result.view("u8")).any(axis=1)
+    assert not different.any(), f"other bits in {different.sum()} of {len(different)} steps"
