@@ -45,19 +45,18 @@ void Foresight::OfForce::begin(bool used) {
   most = -least;
 }
 
-bool Foresight::OfForce::allows(double change, double share) const {
-  return is_used ? change >= share * least && change <= share * most : change == 0;
+// Which part of what it may do a change makes use of.
+double Foresight::OfForce::part(double change) const {
+  if (change == 0) return 0;
+  const double bound = change > 0 ? most : least;
+  return is_used && bound != 0 ? change / bound : HUGE_VAL;
 }
 
-int Foresight::OfForces::count() const {
-  return static_cast<int>(std::count_if(std::begin(on), std::end(on), [](const OfForce& v) { return v.is_used; }));
-}
-
-// `share` of what each may do alone, so that they may all do it at once.
-bool Foresight::OfForces::allow(const double change[pantographs], double share) const {
-  for (int i = 0; i < pantographs; ++i)
-    if (!on[i].allows(change[i], share)) return false;
-  return true;
+// If these sum up to 1 at most, all may do so at once: what each leaves of a dropper's room is linear in its change.
+double Foresight::OfForces::part(const double change[pantographs]) const {
+  double sum = 0;
+  for (int i = 0; i < pantographs; ++i) sum += on[i].part(change[i]);
+  return sum;
 }
 
 void Foresight::OfForces::add_to(LineState& s, const double change[pantographs]) const {
@@ -79,7 +78,10 @@ void Foresight::begin_known() {
   for (OfForce& v : last_.on) v.begin(false);
 }
 
-void Foresight::begin_unknown() { std::swap(last_, end_); }
+void Foresight::begin_unknown(double room) {
+  std::swap(last_, end_);
+  for (OfForce& v : last_.on) v.least *= room, v.most *= room;
+}
 
 void Foresight::begin_at_rest(const LineState& s) {
   for (int i = 0; i < pantographs; ++i) {
@@ -121,27 +123,27 @@ bool Foresight::can_superpose(const CommunicationStep& step) const {
 }
 
 bool Foresight::foresaw(const CommunicationStep& step, const ForceChange& change) const {
-  constexpr double close = 1e-11, near = 1e-10;  // of the length, and m: hosts add up times and places
+  constexpr double close = 1e-9, near = 1e-10;  // of the length, and m: hosts add up times and places
   if (!can_superpose(step) || !(std::abs(step.length() - foreseen_) <= close * foreseen_)) return false;
   for (int i = 0; i < pantographs; ++i) {
-    if (!step.is_straight(i)) return false;
-    if (end_.on[i].is_used && !(std::abs(step.at(i, step.length()).position - ahead_.passage[i].position) <= near))
-      return false;
+    const Passage end = step.at(i, step.length());
+    if (!step.is_straight(i) || is_there(end, i) != end_.on[i].is_used) return false;
+    if (end_.on[i].is_used && !(std::abs(end.position - ahead_.passage[i].position) <= near)) return false;
   }
-  const double share = 1.0 / std::max(1, begin_.count() + end_.count());
-  return begin_.allow(change.begin, share) && end_.allow(change.end, share);
+  return begin_.part(change.begin) + end_.part(change.end) <= 1;
 }
 
-void Foresight::take(const CommunicationStep& step, const LineState& from, const ForceChange& change, LineState& to) {
+double Foresight::take(const CommunicationStep& step, const LineState& from, const ForceChange& change, LineState& to) {
   std::swap(to, ahead_);
   forget();
   begin_.add_to(to, change.begin);
   end_.add_to(to, change.end);
   finish(step, from, to);
+  return 1 - begin_.part(change.begin) - end_.part(change.end);
 }
 
 bool Foresight::can_correct(const CommunicationStep& step, const ForceChange& change) const {
-  return can_superpose(step) && last_.allow(change.end, 1.0 / std::max(1, last_.count()));
+  return can_superpose(step) && last_.part(change.end) <= 1;
 }
 
 void Foresight::correct(const CommunicationStep& step, const LineState& from, const ForceChange& change,
@@ -153,8 +155,7 @@ void Foresight::correct(const CommunicationStep& step, const LineState& from, co
 void Foresight::finish(const CommunicationStep& step, const LineState& from, LineState& to) {
   for (int i = 0; i < pantographs; ++i) to.passage[i] = step.at(i, step.length());
   to.slack = to.slack.cwiseMax(0.0);  // what rounding left
-  if (line_.p.solver.energies)
-    hht_.account(hht_.factors(step.length()), step.loads(0), step.loads(step.length()), from, to);
+  if (line_.p.solver.energies) hht_.account(hht_.factors(to.h), step.loads(0), step.loads(step.length()), from, to);
 }
 
 // Of what happens at each internal step the bounds hold what is allowed in all.
@@ -185,6 +186,9 @@ bool Foresight::through(const CommunicationStep& step, const LineState& start, L
     hht_.jump(before, l0, jumped_);
     from = &jumped_;
   }
+  for (OfForces* all : {begin, end})
+    if (all)
+      for (OfForce& v : all->on) v.d.h = start.h;
   for (Count k = 1; k <= steps; ++k) {
     const double x = k / n;
     const Loads l1 = step.loads(x * length);

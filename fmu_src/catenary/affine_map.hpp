@@ -44,17 +44,18 @@ class Foresight {
   [[nodiscard]] bool advance(const CommunicationStep& step, const LineState& from, LineState& to, bool end_varies);
 
   // What the next look() is to take for unknown of the forces at its begin: nothing; those at the end of the last
-  // step, one with an end that varies or a foreseen one; those under which the line rests in the state `s`.
+  // step, one with an end that varies or a foreseen one with what that left of its bounds; those under which the line
+  // rests in the state `s`.
   void begin_known();
-  void begin_unknown();
+  void begin_unknown(double room);
   void begin_at_rest(const LineState& s);
   // The maps of the step of `length` s from `s`, with the speeds that it has; the forces are guessed to stay.
   [[nodiscard]] bool look(const LineState& s, double length, AffineMap maps[pantographs]);
 
   // Whether the last look() was at this step, but for its forces, and no dropper slackens or tightens otherwise. take()
-  // then is advance(), once.
+  // then is advance(), once; it returns which share is left of the bounds of the forces at the end.
   bool foresaw(const CommunicationStep& step, const ForceChange& change) const;
-  void take(const CommunicationStep& step, const LineState& from, const ForceChange& change, LineState& to);
+  double take(const CommunicationStep& step, const LineState& from, const ForceChange& change, LineState& to);
   // The same for the last step, `step` from `from` to `to` with other forces at its end, which were unknown.
   bool can_correct(const CommunicationStep& step, const ForceChange& change) const;
   void correct(const CommunicationStep& step, const LineState& from, const ForceChange& change, LineState& to);
@@ -73,15 +74,14 @@ class Foresight {
     double least = 0, most = 0;
 
     void begin(bool used);
-    bool allows(double change, double share) const;
+    double part(double change) const;
   };
   struct OfForces {
     OfForces(const Line& line) : on{OfForce(line), OfForce(line)} {}
 
     OfForce on[pantographs];
 
-    int count() const;
-    bool allow(const double change[pantographs], double share) const;
+    double part(const double change[pantographs]) const;
     void add_to(LineState& s, const double change[pantographs]) const;
   };
   bool through(const CommunicationStep& step, const LineState& from, LineState& to, bool with_energies, OfForces* begin,

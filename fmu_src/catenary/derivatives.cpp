@@ -60,6 +60,7 @@ Outputs Simulation::outputs_change(const Inputs& direction) {
   Variation& v = varied_;
   LineState& d = v.d;
   v.clear();
+  d.h = before_.line.h;
   Loads l0 = step.loads(0), dl0 = step.loads_change(change_of, 0);
   Loads none = dl0;
   for (PointLoad& l : none.on) l.value.setZero();

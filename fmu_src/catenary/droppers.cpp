@@ -39,10 +39,13 @@ Range DropperResponse::add(int dropper, double factor, VectorXd& x) const {
   return c.on;
 }
 
+constexpr Eigen::Index most_slack = 1024;  // at once; a matrix of 8 MB
+
 Slackening::Slackening(const VectorXd& stiffness)
     : stiffness_(stiffness),
       active_(stiffness.size()),
-      matrix_(stiffness.size() * stiffness.size()),
+      matrix_(std::min<Eigen::Index>(stiffness.size(), most_slack) *
+              std::min<Eigen::Index>(stiffness.size(), most_slack)),
       right_(stiffness.size()),
       force_(stiffness.size()),
       is_active_(static_cast<size_t>(stiffness.size())) {}
@@ -76,6 +79,7 @@ std::optional<int> Slackening::solve(const VectorXd& trial, const DropperRespons
     count_ = 0;
     for (Eigen::Index i = 0; i < n; ++i)
       if (is_active_[i]) active_[count_++] = static_cast<int>(i);
+    if (count_ > most_slack) return std::nullopt;
     if (count_ > 0)
       solve_active(trial, response, s);
     else
@@ -116,7 +120,7 @@ void Slackening::solve_variation(const VectorXd& trial, const DropperResponse& r
   for (Eigen::Index i = 0; i < s.size(); ++i)
     if (s[i] > 0) active_[count_++] = static_cast<int>(i);
   ds.setZero();
-  if (count_ > 0) solve_active(trial, response, ds);
+  if (count_ > 0 && count_ <= most_slack) solve_active(trial, response, ds);
 }
 
 }  // namespace zspring::catenary

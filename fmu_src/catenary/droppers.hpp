@@ -61,7 +61,8 @@ class Slackening {
   explicit Slackening(const VectorXd& stiffness);
 
   // From `trial` N, the forces with s = 0, to the slack s, m; begins with what is slack in s. Returns the number
-  // of linear systems solved; none when it found no solution, which rounding alone could cause.
+  // of linear systems solved; none when it found no solution, which rounding alone
+  // could cause, or more than 1024 are slack at once.
   std::optional<int> solve(const VectorXd& trial, const DropperResponse& response, VectorXd& s);
   // Its derivative: the same droppers stay slack, with variations in place of values.
   void solve_variation(const VectorXd& trial, const DropperResponse& response, const VectorXd& s, VectorXd& ds);

@@ -11,9 +11,7 @@ namespace zspring::catenary {
 
 #if defined(__GNUC__)
 #define ZSPRING_INLINE inline __attribute__((always_inline))
-#if !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"  // of functions that are always inlined
-#endif
 
 typedef double Four __attribute__((vector_size(32)));
 

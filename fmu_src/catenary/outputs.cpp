@@ -5,8 +5,8 @@ namespace {
 
 // What the definitions are written with.
 struct View {
-  View(const Line& overhead, const SimulationState& state, const double (&zero)[pantographs])
-      : line(overhead), s(state.line), map(state.map), datum(zero) {
+  View(const Line& overhead, const SimulationState& state)
+      : line(overhead), s(state.line), map(state.map), datum(state.datum) {
     for (int i = 0; i < pantographs; ++i) contact[i] = line.mesh.at(s.passage[i].position);
     for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point.position[i]);
     double least = HUGE_VAL, most = -HUGE_VAL;
@@ -98,7 +98,7 @@ DISCRETE(pantograph_dot_compliance_previous, x.map[i].previous)
 
 namespace zspring::catenary {
 
-Outputs Simulation::present_outputs() const { return output_values(View(line_, state_, datum_)); }
-Outputs Simulation::change(const LineState& d) const { return output_changes(View(line_, state_, datum_), d); }
+Outputs Simulation::present_outputs() const { return output_values(View(line_, state_)); }
+Outputs Simulation::change(const LineState& d) const { return output_changes(View(line_, state_), d); }
 
 }  // namespace zspring::catenary

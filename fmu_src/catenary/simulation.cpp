@@ -35,7 +35,7 @@ Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
   const LineState rest = at_rest(expected);
   for (int i = 0; i < pantographs; ++i) {
     state.map[i].free = height_under(line_, rest, i);
-    if (expected[i].force > 0) datum_[i] = state.map[i].free;
+    if (expected[i].force > 0) state.datum[i] = state.map[i].free;
   }
   if (p.exchange != Exchange::Target) {
     state.foreseen = p.exchange_step;
@@ -79,8 +79,11 @@ std::optional<Discard> Simulation::leaves_line(const CommunicationStep& step) co
 
 std::optional<Discard> Simulation::run(const Held& told) {
   std::copy_n(state_.map, pantographs, next_.map);
+  std::copy_n(state_.datum, pantographs, next_.datum);
   next_.guessed = state_.guessed;
   next_.foreseen = state_.foreseen;
+  next_.was_foreseen = false;
+  next_.room = 1;
   switch (line_.p.exchange) {
     case Exchange::Sequential:
       return run_sequential(told);
@@ -99,11 +102,7 @@ std::optional<Discard> Simulation::run(const Held& told) {
 std::optional<Discard> Simulation::run_sequential(const Held& told) {
   const CommunicationStep step(line_, state_.line.passage, told);
   if (std::optional<Discard> discard = leaves_line(step)) return discard;
-  if (!foresight_.has_looked()) {
-    AffineMap known[pantographs];
-    foresight_.begin_known();
-    if (!foresight_.look(state_.line, state_.foreseen, known)) return no_slack(0);
-  }
+  if (!look_again()) return no_slack(0);
   ForceChange change;
   for (int i = 0; i < pantographs; ++i) change.end[i] = step.at(i, told.length).force - state_.line.passage[i].force;
   if (foresight_.foresaw(step, change))
@@ -126,30 +125,25 @@ std::optional<Discard> Simulation::run_parallel(const Held& told) {
   if (!correct_guess(told, change, corrected)) return no_slack(0);
   const CommunicationStep step(line_, next_.known.passage, held);
   if (std::optional<Discard> discard = leaves_line(step)) return discard;
-  if (corrected && foresight_.foresaw(step, change))
-    foresight_.take(step, next_.known, change, next_.line);
+  next_.was_foreseen = corrected && foresight_.foresaw(step, change);
+  if (next_.was_foreseen)
+    next_.room = foresight_.take(step, next_.known, change, next_.line);
   else if (!foresight_.advance(step, next_.known, next_.line, true))
     return no_slack(told.length);
-  foresight_.begin_unknown();
+  foresight_.begin_unknown(next_.room);
   return look_ahead(told.length);
 }
 
 // The last step once more, to next_.known, with the forces at its end, which have come to be known. `corrected`: by
 // what is known of it alone.
 bool Simulation::correct_guess(const Held& told, const ForceChange& change, bool& corrected) {
+  if (!look_again()) return false;
   if (state_.guessed.length == 0) {
     next_.known = state_.line;
     for (int i = 0; i < pantographs; ++i) next_.known.passage[i].force = told.inputs.pantograph[i].force.value;
     hht_.jump(loads_at(line_.mesh, state_.line.passage), loads_at(line_.mesh, next_.known.passage), next_.known);
     corrected = std::all_of(change.end, change.end + pantographs, [](double by) { return by == 0; });
     return true;
-  }
-  if (!foresight_.has_looked()) {
-    const CommunicationStep step(line_, state_.known.passage, state_.guessed);
-    if (!foresight_.advance(step, state_.known, next_.line, true)) return false;
-    foresight_.begin_unknown();
-    AffineMap known[pantographs];
-    if (!foresight_.look(state_.line, state_.foreseen, known)) return false;
   }
   Held held = state_.guessed;
   for (int i = 0; i < pantographs; ++i) held.inputs.pantograph[i].force.value = told.inputs.pantograph[i].force.value;
@@ -161,6 +155,34 @@ bool Simulation::correct_guess(const Held& told, const ForceChange& change, bool
   return true;
 }
 
+// After the state was set or a step discarded: what had been foreseen from it, to the last bit.
+bool Simulation::look_again() {
+  if (foresight_.has_looked()) return true;
+  AffineMap known[pantographs];
+  foresight_.begin_known();
+  if (state_.line.statistics.steps == 0) {
+    if (is_as_expected())
+      foresight_.begin_at_rest(state_.line);
+    else if (line_.p.exchange == Exchange::Parallel)
+      return true;  // nothing had been foreseen
+  } else if (line_.p.exchange == Exchange::Parallel) {
+    if (state_.was_foreseen) {
+      if (!foresight_.look(before_.line, before_.foreseen, known)) return false;
+    } else {
+      const CommunicationStep step(line_, state_.known.passage, state_.guessed);
+      if (!foresight_.advance(step, state_.known, next_.line, true)) return false;
+    }
+    foresight_.begin_unknown(state_.room);
+  }
+  return foresight_.look(state_.line, state_.foreseen, known);
+}
+
+bool Simulation::is_as_expected() const {
+  for (int i = 0; i < pantographs; ++i)
+    if (state_.line.passage[i].force != line_.p.pantograph[i].static_force) return false;
+  return true;
+}
+
 std::optional<Discard> Simulation::look_ahead(double length) {
   next_.foreseen = length;
   if (!foresight_.look(next_.line, length, next_.map)) return no_slack(length);
@@ -169,7 +191,8 @@ std::optional<Discard> Simulation::look_ahead(double length) {
 
 bool Simulation::is_possible(const SimulationState& s) const {
   return s.line.h >= 0 && (s.line.slack.array() >= 0).all() && s.known.h >= 0 && (s.known.slack.array() >= 0).all() &&
-         s.guessed.length >= 0 && !too_long(s.guessed.length, line_.p.solver.step) && s.foreseen >= 0;
+         s.room >= 0 && s.room <= 1 && s.guessed.length >= 0 && !too_long(s.guessed.length, line_.p.solver.step) &&
+         s.foreseen >= 0 && !too_long(s.foreseen, line_.p.solver.step);
 }
 
 std::optional<Text> Simulation::describe_doubt() const {

@@ -13,8 +13,13 @@ struct SimulationState {
   Held guessed;
   AffineMap map[pantographs];  // of the next step
   double foreseen = 0;         // s, its length
+  // Exchange::Parallel: whether the last step had been foreseen, and what share that left of the bounds of the forces
+  // at its end; 1 otherwise.
+  bool was_foreseen = false;
+  double room = 1;
+  double datum[pantographs] = {};  // m, of the heights under the pantographs
 };
-ZSPRING_MEMBERS(SimulationState, line, known, guessed, map, foreseen)
+ZSPRING_MEMBERS(SimulationState, line, known, guessed, map, foreseen, was_foreseen, room, datum)
 
 class Simulation final : public Model<Simulation, Inputs, SimulationState, Held> {
  public:
@@ -41,6 +46,8 @@ class Simulation final : public Model<Simulation, Inputs, SimulationState, Held>
   std::optional<Discard> run_sequential(const Held& told);
   std::optional<Discard> run_parallel(const Held& told);
   [[nodiscard]] bool correct_guess(const Held& told, const ForceChange& change, bool& corrected);
+  [[nodiscard]] bool look_again();
+  bool is_as_expected() const;
   std::optional<Discard> look_ahead(double length);
   void went_back() override { foresight_.forget(); }
   LineState at_rest(const Passage passage[pantographs]);
@@ -51,8 +58,7 @@ class Simulation final : public Model<Simulation, Inputs, SimulationState, Held>
   Line line_;
   Hht hht_;
   Foresight foresight_;
-  Variation varied_;                // workspace
-  double datum_[pantographs] = {};  // m, of the heights under the pantographs
+  Variation varied_;  // workspace
   Calculated calculated_;
 };
 

@@ -74,9 +74,10 @@ ZSPRING_INLINE bool correct_body(const Operators& op, const HhtCoefficients& c, 
     const Four after = i + 1 < on.end ? catenary::load(x.a + k + 4) : four(0);
     store(x.u1 + k, catenary::load(x.u1 + k) + beta_h2 * here);
     store(x.v1 + k, catenary::load(x.v1 + k) + gamma_h * here);
-    store(x.internal1 + k, memory * catenary::load(x.internal + k) - inverse * times(op.mass[i], before, here, after));
+    const Four internal = memory * catenary::load(x.internal + k) - inverse * times(op.mass[i], before, here, after);
+    store(x.internal1 + k, internal);
     if (x.slope) store(x.slope + k, rate * (here - catenary::load(x.old_a + k)));
-    nothing = nothing + (here - here);
+    nothing = nothing + (here - here) + (internal - internal);
     before = here, here = after;
   }
   return sum(nothing) == 0;
@@ -144,7 +145,8 @@ ZSPRING_INLINE Range solve_locally_body(const Factor& f, Range on, double* x) {
   return {begin, end};
 }
 
-#if defined(__GNUC__) && defined(__x86_64__)
+// GCC for Windows moves what does not fit into registers as if the stack were aligned for AVX (GCC bug 54412).
+#if defined(__GNUC__) && defined(__x86_64__) && (defined(__clang__) || !defined(_WIN32))
 const bool has_avx2 = __builtin_cpu_supports("avx2");
 #define ZSPRING_SWEEP(Result, name, parameters, arguments)                                        \
   Result name##_any parameters { return name##_body arguments; }                                  \

@@ -8,7 +8,8 @@ WireOperator::WireOperator(const SparseMatrix& matrix) : rows_(static_cast<size_
       const Eigen::Index ahead = it.col() / 4 - row / 4;  // in stations
       StationRow& of = rows_[row / 4];
       StationRow::Block& block = ahead == 0 ? of.here : ahead > 0 ? of.after : of.before;
-      (it.col() % 2 == row % 2 ? block.straight : block.crossed)[row % 4] = it.value();
+      double* part = it.col() % 2 == row % 2 ? block.straight : block.crossed;
+      part[row % 4] = it.value();
     }
 }
 

@@ -6,5 +6,7 @@
 // bits.
 #pragma once
 
+#ifndef EIGEN_DONT_VECTORIZE
 #define EIGEN_DONT_VECTORIZE
+#endif
 #include <Eigen/Core>

@@ -94,6 +94,118 @@ def test_a_dropper_that_slackens_otherwise_than_foreseen_makes_the_step_anew(cat
     assert len(slack) > 5
 
 
+@pytest.mark.parametrize("exchange", ["Sequential", "Parallel"])
+@pytest.mark.parametrize("alpha", [-0.05, -0.3])
+def test_steps_of_any_lengths_in_turn_go_as_those_of_a_line_that_foresees_nothing(catenary, exchange, alpha):
+    """Slivers included, of which HHT's memory takes no slope; each force is held for two steps."""
+    lines = [begun(catenary, way, 1e-3, **{"solver.alpha": alpha}) for way in (exchange, "Target")]
+    random = np.random.default_rng(5)
+    before = 120.0
+    for n in range(120):
+        now = before if n % 2 else 120.0 + 20.0 * random.standard_normal()
+        size = random.choice([1e-3, 1e-3, 2e-4, 1e-4, 1.5e-3])
+        lines[0]["pantograph[1].force"] = now if exchange == "Sequential" else before
+        lines[1]["pantograph[1].force"] = now
+        for p in lines:
+            p.step(size)
+        if exchange == "Sequential" or now == before:
+            a, b = (p.reals([HEIGHT, "pantograph[1].wire_velocity", "droppers.force_min"]) for p in lines)
+            np.testing.assert_array_less(np.abs(a - b), [1e-12, 1e-10, 1e-8])
+        before = now
+
+
+def test_forces_that_change_twice_leave_no_dropper_pushing(catenary):
+    """Up to the force at which the weakest dropper would slacken, and beyond it in the next step; from many states."""
+    size, names, tried = 1e-3, [HEIGHT, "pantograph[1].wire_velocity", "droppers.force_min"], 0
+    start = {"line.spans": 3, "pantograph[1].start": 40.0, "pantograph[1].speed": 60.0}
+    lines = [begun(catenary, way, size, **start) for way in ("Parallel", "Target")]
+
+    def go(p: Instance, force: float) -> None:
+        p["pantograph[1].force"] = force
+        p.step(size)
+
+    for n in range(400):
+        usual, coming = (120.0 + 30.0 * np.sin(0.05 * k) for k in (n, n + 1))
+        kept, now = [p.slave.getFMUstate() for p in lines], lines[0].time
+
+        def follow(p: Instance, forces: list[float], kept=kept, now=now) -> np.ndarray:
+            p.slave.setFMUstate(kept[lines.index(p)])
+            p.time = now
+            for force in forces:
+                go(p, force)
+            return p.reals(names)
+
+        least = follow(lines[1], [usual, usual])[2]
+        slope = follow(lines[1], [usual, usual + 1.0])[2] - least
+        if least > 0 and 5e-3 < abs(slope) and least / abs(slope) < 3000:
+            for first, second in ((0.5, 0.8), (0.9, 0.9), (0.98, 2.0)):
+                one = usual - first * least / slope
+                two = one - second * least / slope
+                told, target = follow(lines[0], [usual, one, two, two]), follow(lines[1], [one, two, two, two])
+                np.testing.assert_array_less(np.abs(told - target), [1e-10, 1e-8, 1e-6])
+                tried += 1
+        for p, state, force in zip(lines, kept, (usual, coming)):  # that of the begin, and that of the end
+            follow(p, [])
+            go(p, force)
+            p.slave.freeFMUstate(state)
+    assert tried > 30
+
+
+@pytest.mark.parametrize("moves", ["position", "lengths", "slackening"])
+@pytest.mark.parametrize("exchange", ["Sequential", "Parallel"])
+def test_a_line_set_back_before_every_step_goes_bit_for_bit_as_one_that_is_not(catenary, exchange, moves):
+    """What it has foreseen is no part of its state."""
+    size = 3e-3 if moves == "slackening" else 1e-3
+    settings = {"travel": "Position", "pantograph[1].position": 90.0} if moves == "position" else {}
+    settings |= {"solver.energies": False} if moves == "slackening" else {}
+    usual, set_back = (begun(catenary, exchange, size, **settings) for _ in range(2))
+    names = [name for name in usual.fmu.names("output") if usual.fmu.variables[name].type == "Real"]
+    random, time = np.random.default_rng(2), 0.0
+    for n in range(150):
+        force = 120.0 + (300.0 if moves == "slackening" else 30.0) * random.standard_normal()
+        after = (n + 1) * size * (1.0 if moves != "lengths" else 1.0 / 3.0)
+        kept = set_back.slave.getFMUstate()
+        set_back.slave.setFMUstate(kept)
+        set_back.slave.freeFMUstate(kept)
+        for p in (usual, set_back):
+            p["pantograph[1].force"] = max(0.0, force)
+            if moves == "position":
+                p["pantograph[1].position"] = 90.0 + SPEED * after
+            p.step(after - time)
+        time = after
+        np.testing.assert_array_equal(usual.reals(names), set_back.reals(names))
+
+
+@pytest.mark.parametrize("exchange", ["Sequential", "Parallel"])
+def test_a_pantograph_that_comes_later_is_mapped_from_its_first_step_on(catenary, exchange):
+    later = {"pantograph[2].start": 150.0, "pantograph[2].speed": 0.0}
+    p = begun(catenary, exchange, 1e-3, **later)
+    told = [f"pantograph[2].{name}" for name in ("compliance", "compliance_previous")]
+    assert p.reals(told).tolist() == [0.0, 0.0]
+    p.step(1e-3)
+    p["pantograph[2].speed"] = SPEED
+    p.step(1e-3)
+    compliance, previous = p.reals(told)
+    assert compliance > 0 and (previous > 0) == (exchange == "Parallel")
+
+
+def test_a_state_brings_the_datum_of_its_heights_along(catenary):
+    """Into an instance that knew another line, and whose position is not that of the start any more."""
+    line = {"travel": "Position", "pantograph[1].position": 40.0}
+    p = begun(catenary, "Sequential", 1e-3, **line)
+    for n in range(1, 200):
+        p["pantograph[1].position"] = 40.0 + 0.06 * n
+        p.step(1e-3)
+    state = p.slave.getFMUstate()
+    data = p.slave.serializeFMUstate(state)
+    p.slave.freeFMUstate(state)
+    other = catenary({**LINE, **line, "line.spans": 5}, initialize=False)
+    state = other.slave.deSerializeFMUstate(data)
+    other.slave.setFMUstate(state)
+    other.slave.freeFMUstate(state)
+    assert other[HEIGHT] == p[HEIGHT]
+
+
 @pytest.mark.parametrize("speed", [0.0, 30.0, 80.0])
 def test_a_taut_string_gives_way_by_its_impedance(catenary, speed):
     """A force that grows to F in a step H moves a string under it by F H / (4 sqrt(T m)), at any speed below sqrt(T/m).

@@ -9,7 +9,7 @@
 
 using namespace zspring::catenary;
 
-#if defined(__GNUC__) && defined(__x86_64__)
+#if defined(__GNUC__) && defined(__x86_64__) && (defined(__clang__) || !defined(_WIN32))
 namespace {
 
 constexpr int stations = 61;
