@@ -15,10 +15,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from release_tools import ROOT, tool
+from release_tools import TOOLS, fetch_jars, run_tool, tool
 
 from client_runs import RUNS, Run
-from zspring.exported_fmu import Copy
+from zspring.exported_fmu import Copy, flat_names
 from zspring.fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
 from zspring.line.journey import Journey
 from zspring.line.run import run_line
@@ -26,17 +26,9 @@ from zspring.line.schemes import Coupling
 from zspring.line.system import System
 
 each_run = pytest.mark.parametrize("run", RUNS.values(), ids=RUNS)
-TOOLS = ROOT / "build" / "clients"  # kept from one run to the next
 
 VDMCHECK = "1.1.3"
 FMI_SIM = "0.7.0"
-
-
-def run_tool(*command: str | Path, folder: Path | None = None) -> str:
-    """Output of a command."""
-    done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    assert done.returncode == 0, done.stdout
-    return done.stdout
 
 
 @pytest.fixture(scope="session")
@@ -44,18 +36,7 @@ def vdmcheck() -> Path:
     """Folder with VDMCheck2 and what it needs, laid out as it wants."""
     folder = TOOLS / f"vdmcheck2-{VDMCHECK}"
     if not (folder / "fmi2-rule-model").is_dir():
-        folder.mkdir(parents=True, exist_ok=True)
-        dependency = "<groupId>org.into-cps.vdmcheck.fmi2</groupId><artifactId>vdmcheck2</artifactId>"
-        (folder / "pom.xml").write_text(
-            '<project xmlns="http://maven.apache.org/POM/4.0.0"><modelVersion>4.0.0</modelVersion>'
-            "<groupId>zspring</groupId><artifactId>clients</artifactId><version>1</version><dependencies>"
-            f"<dependency>{dependency}<version>{VDMCHECK}</version></dependency></dependencies></project>"
-        )
-        run_tool(
-            *(tool("mvn"), "-q", "-B", "dependency:copy-dependencies"),
-            *("-Dmdep.stripVersion=true", f"-DoutputDirectory={folder}"),
-            folder=folder,
-        )
+        fetch_jars(folder, [("org.into-cps.vdmcheck.fmi2", "vdmcheck2", VDMCHECK)], "-Dmdep.stripVersion=true")
         for jar in "vdmcheck2.jar", "static-model.jar", "rule-model.jar":  # the last one last: see above
             with zipfile.ZipFile(folder / jar) as archive:
                 archive.extractall(folder)
@@ -106,6 +87,47 @@ def test_fmi_sim_simulates(fmi_sim: Path, run: Run, tmp_path):
     with open(written, newline="") as file:
         rows = list(csv.DictReader(file))[1:]
     run.check(np.array([[float(row[name]) for name in run.outputs] for row in rows]))
+
+
+# In a process of its own: JAX starts threads that other tests would fork with.
+JAXONOMY = """import sys
+import jax.numpy as jnp
+import numpy as np
+from jaxonomy import DiagramBuilder, SimulatorOptions, simulate
+from jaxonomy.library import ModelicaFMU, SourceBlock
+step, given = float(sys.argv[2]), np.load("inputs.npy")
+parameters = {name: float(value) for name, value in (text.split("=") for text in sys.argv[4:])}
+diagram, outputs = DiagramBuilder(), sys.argv[3].split(",")
+names = dict(input_names=list(given.dtype.names), output_names=outputs)
+block = diagram.add(ModelicaFMU(sys.argv[1], step, parameters=parameters, first_step_at_zero=True, **names))
+for n, name in enumerate(given.dtype.names):
+    table = jnp.asarray(given[name])
+    source = diagram.add(SourceBlock(lambda t, table=table: table[jnp.round(t / step).astype(int)], name=f"input_{n}"))
+    diagram.connect(source.output_ports[0], block.input_ports[n])
+system, count = diagram.build(), len(given) - 1
+signals = dict(zip(outputs, block.output_ports))
+options = SimulatorOptions(max_major_steps=10 * count, max_major_step_length=step)
+context = system.create_context()
+result = simulate(system, context, (0.0, count * step), options=options, recorded_signals=signals)
+np.testing.assert_allclose(result.time, step * np.arange(count + 1), atol=1e-9)
+np.save("outputs.npy", np.column_stack([result.outputs[name] for name in outputs]))
+"""
+
+
+@each_run
+def test_jaxonomy_simulates(run: Run, tmp_path):
+    """A block diagram that JAX compiles; names of outputs must be Python's identifiers. Needs Python 3.11."""
+    with Fmu(installed_fmu(run.model)) as fmu:
+        Copy(flat=True).write(fmu, tmp_path / "model.fmu")
+        flat = dict(zip((v.name for v in fmu.variables), flat_names(fmu)))
+    table = np.zeros(len(run.time) + 1, dtype=[(flat[name], float) for name in run.inputs])
+    for name, values in run.inputs.items():
+        table[flat[name]][:-1] = values
+    np.save(tmp_path / "inputs.npy", table)
+    outputs = ",".join(flat[name] for name in run.outputs)
+    parameters = (f"{flat[name]}={value}" for name, value in run.parameters.items())
+    run_tool(*(sys.executable, "-c", JAXONOMY, "model.fmu", str(run.step), outputs, *parameters), folder=tmp_path)
+    run.check(np.load(tmp_path / "outputs.npy")[1:])
 
 
 @each_run
