@@ -6,6 +6,10 @@
 
 #include "four.hpp"
 
+#if defined(__GNUC__) && defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
 namespace zspring::catenary::sweeps {
 namespace {
 
@@ -147,7 +151,17 @@ ZSPRING_INLINE Range solve_locally_body(const Factor& f, Range on, double* x) {
 
 // GCC for Windows moves what does not fit into registers as if the stack were aligned for AVX (GCC bug 54412).
 #if defined(__GNUC__) && defined(__x86_64__) && (defined(__clang__) || !defined(_WIN32))
-const bool has_avx2 = __builtin_cpu_supports("avx2");
+// Processor and system know AVX2. By hand, as __builtin_cpu_supports needs a runtime that zig does not bring.
+bool knows_avx2() {
+  unsigned a, b, c, d;
+  constexpr unsigned saved_by_system = 1u << 27, avx = 1u << 28, avx2 = 1u << 5, xmm_and_ymm = 6;
+  if (!__get_cpuid(1, &a, &b, &c, &d) || (c & (saved_by_system | avx)) != (saved_by_system | avx)) return false;
+  unsigned low, high;
+  __asm__("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+  if ((low & xmm_and_ymm) != xmm_and_ymm) return false;
+  return __get_cpuid_count(7, 0, &a, &b, &c, &d) && (b & avx2);
+}
+const bool has_avx2 = knows_avx2();
 #define ZSPRING_SWEEP(Result, name, parameters, arguments)                                        \
   Result name##_any parameters { return name##_body arguments; }                                  \
   __attribute__((target("avx2"))) Result name##_avx2 parameters { return name##_body arguments; } \

@@ -74,7 +74,7 @@ Numbers results(const Sweeps& s) {
 }  // namespace
 
 int main() {
-  if (!__builtin_cpu_supports("avx2")) return std::puts("one kind"), 0;
+  if (!sweeps::has_avx2) return std::puts("one kind"), 0;
   using namespace sweeps;
   const Numbers any = results({multiply_any, predict_any, correct_any, account_any, solve_any, solve_locally_any});
   const Numbers avx2 =
