@@ -220,7 +220,7 @@ def judge(instance: Instance, fmu: Fmu, seed: int, kind: str, tally: Tally) -> N
     # An imposed position that jumps in straight lines has no energy balance.
     if kind == "sensible" and values.get("drive") != 2 and balance(run) > 0.02:
         tally.refined += 1
-        lacks = [balance(run_with(step=values["solver.step"] / finer)) for finer in (8, 64, 512)]
+        lacks = [balance(run_with(step=max(1e-6, values["solver.step"] / finer))) for finer in (8, 64, 512)]
         if min(lacks) > 0.02:
             fault(f"the energy balance lacks {balance(run):.1e}, with finer steps {lacks}")
 
