@@ -93,16 +93,16 @@ def test_fmi_sim_simulates(fmi_sim: Path, run: Run, tmp_path):
 JAXONOMY = """import sys
 import jax.numpy as jnp
 import numpy as np
-from jaxonomy import DiagramBuilder, SimulatorOptions, simulate
-from jaxonomy.library import ModelicaFMU, SourceBlock
+from jaxonomy import DiagramBuilder, SimulatorOptions, library as blocks, simulate
 step, given = float(sys.argv[2]), np.load("inputs.npy")
 parameters = {name: float(value) for name, value in (text.split("=") for text in sys.argv[4:])}
 diagram, outputs = DiagramBuilder(), sys.argv[3].split(",")
 names = dict(input_names=list(given.dtype.names), output_names=outputs)
-block = diagram.add(ModelicaFMU(sys.argv[1], step, parameters=parameters, first_step_at_zero=True, **names))
+block = diagram.add(blocks.ModelicaFMU(sys.argv[1], step, parameters=parameters, first_step_at_zero=True, **names))
 for n, name in enumerate(given.dtype.names):
     table = jnp.asarray(given[name])
-    source = diagram.add(SourceBlock(lambda t, table=table: table[jnp.round(t / step).astype(int)], name=f"input_{n}"))
+    lookup = lambda t, table=table: table[jnp.round(t / step).astype(int)]
+    source = diagram.add(blocks.SourceBlock(lookup, name=f"input_{n}"))
     diagram.connect(source.output_ports[0], block.input_ports[n])
 system, count = diagram.build(), len(given) - 1
 signals = dict(zip(outputs, block.output_ports))
