@@ -16,7 +16,7 @@
 
 namespace zspring::catenary {
 
-// The droppers at some stations, and all of them.
+// The droppers at these stations.
 inline Range droppers_at(const Mesh& mesh, Range on) {
   const auto index = [&](int station) {
     return static_cast<int>(std::lower_bound(mesh.droppers.begin(), mesh.droppers.end(), station) -
