@@ -204,6 +204,14 @@ std::optional<Text> Simulation::describe_doubt() const {
       held_.length, before_.foreseen);
 }
 
+std::optional<Text> Simulation::describe_reading(Id output) const {
+  const bool is_map = output == Id::pantograph_dot_compliance || output == Id::pantograph_dot_compliance_previous;
+  if (!is_map || line_.p.exchange != Exchange::Target) return std::nullopt;
+  return text(
+      "0, as the wire that a pantograph meets is not told with exchange Target: values are exchanged once a step, "
+      "which is less accurate; Sequential and Parallel tell it");
+}
+
 Text Simulation::describe_run() const {
   const Statistics& n = state_.line.statistics;
   return text("%.0f steps, %.3g linear systems a step for the slack droppers, at most %.0f",

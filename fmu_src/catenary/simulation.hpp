@@ -31,6 +31,7 @@ class Simulation final : public Model<Simulation, Inputs, SimulationState, Held>
 
   Text describe_run() const override;
   std::optional<Text> describe_doubt() const override;
+  std::optional<Text> describe_reading(Id output) const override;
 
   const Calculated& calculated() const { return calculated_; }
 

@@ -71,6 +71,8 @@ class Model {
   virtual std::optional<Text> describe_step() const { return std::nullopt; }
   // What made the last step less accurate than it should be; said once.
   virtual std::optional<Text> describe_doubt() const { return std::nullopt; }
+  // Why who reads this output is not told what he asks for; said once.
+  virtual std::optional<Text> describe_reading(Id) const { return std::nullopt; }
 
   // All of the state but the parameters.
   void write(Writer& writer) { visit_all(writer); }

@@ -22,6 +22,8 @@ namespace zspring {
 enum class Id { ZSPRING_IDENTIFIERS(ZSPRING_ENUMERATOR) };
 #define ZSPRING_CONTINUOUS(id, continuous) continuous,
 inline constexpr bool is_continuous[] = {ZSPRING_IDENTIFIERS(ZSPRING_CONTINUOUS)};
+#define ZSPRING_ID(id, i) Id::id,
+inline constexpr Id id_of[] = {ZSPRING_OUTPUTS(ZSPRING_ID)};  // an output, by its place
 
 using Outputs = std::array<double, ZSPRING_OUTPUT_COUNT>;  // in the order of the model description
 

@@ -51,7 +51,7 @@ void Instance::reset() {
   for (const auto& [reference, value] : origin_.starts) set(reference, value);
   stop_ = never;
   time_ = 0;
-  stepped_ = doubted_ = false;
+  stepped_ = doubted_ = misread_ = false;
   forget_discard();
 }
 
@@ -83,6 +83,11 @@ double Instance::get(unsigned reference, Type type) {
   if (v.is_input()) return v.signal(inputs_).value;
   if (!v.is_output()) return v.get(simulation().calculated());
   const double y = v.get(simulation().outputs());
+  if (!misread_ && log.enabled(Category::logStatusWarning))
+    if (const std::optional<Text> why = simulation().describe_reading(id_of[v.binding.output])) {
+      misread_ = true;
+      log.write(fmi2OK, Category::logStatusWarning, text("%s: %s", v.name, why->chars));
+    }
   return type == Type::Real ? y : std::min<double>(y, std::numeric_limits<fmi2Integer>::max());
 }
 

@@ -75,6 +75,7 @@ class Instance {
   double time_;
   bool stepped_;
   bool doubted_;  // and said so
+  bool misread_;  // and said so
   bool wants_to_end_;
   double discarded_length_;               // s, of the last step if that was discarded; else 0
   std::optional<Simulation> simulation_;  // refers to parameters_

@@ -267,6 +267,18 @@ def test_another_step_than_was_told_is_said_once(catenary):
     assert len(lines) == 1 and "a communication step of 0.002 s: the affine map was told for one of 0.001 s" in lines[0]
 
 
+@pytest.mark.parametrize("exchange", ["Target", "Sequential", "Parallel"])
+def test_a_map_that_is_not_told_is_said_once_to_who_reads_it(catenary, exchange):
+    p = begun(catenary, exchange, 1e-3)
+    p.reals([HEIGHT, "pantograph[1].free_height"])
+    assert not [m for m in p.log if m.category == "logStatusWarning"]
+    for _ in range(2):
+        p.reals(["pantograph[1].compliance", "pantograph[2].compliance_previous"])
+    lines = [m.text for m in p.log if m.category == "logStatusWarning"]
+    assert len(lines) == (exchange == "Target")
+    assert all(line.startswith("pantograph[1].compliance: 0") and "exchange Target" in line for line in lines)
+
+
 def test_parallel_has_no_directional_derivatives(catenary):
     p = begun(catenary, "Parallel", 1e-3)
     p.step(1e-3)
