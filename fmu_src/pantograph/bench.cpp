@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <utility>
 
 namespace zspring {
 namespace {
@@ -107,10 +109,14 @@ void Bench::tune(const BenchParameters& programme, double largest_step) {
 
 void Bench::advance(double h, bool reaches_node, Phasor begin, double force_begin, Phasor end, double force_end) {
   if (b_.node >= b_.ramp_steps) {
-    // (1/pi) integral of F sin, F cos over the period.
     const double weight = h * b_.programme.frequency;
-    b_.sin_sum += weight * (force_begin * begin.sine + force_end * end.sine);
-    b_.cos_sum += weight * (force_begin * begin.cosine + force_end * end.cosine);
+    double f0 = weight * force_begin, g0 = f0 * begin.sine;
+    double f1 = weight * force_end, g1 = f1 * end.sine;
+    for (double (&moment)[2] : b_.moments) {
+      moment[0] += f0 + f1, moment[1] += g0 + g1;
+      f0 *= begin.cosine, g0 *= begin.cosine;
+      f1 *= end.cosine, g1 *= end.cosine;
+    }
   }
   if (!reaches_node) {
     b_.offset += h;
@@ -123,14 +129,26 @@ void Bench::advance(double h, bool reaches_node, Phasor begin, double force_begi
   finish_period();
 }
 
+// cos n phase = T_n(cos phase) and sin n phase = sin phase U_{n-1}(cos phase) have the recurrence of Chebyshev's
+// polynomials, P_{n+1} = 2 cos P_n - P_{n-1}. So have their means with F cos^k, here as complex numbers.
 void Bench::finish_period() {
+  std::complex<double> before_last[harmonics], last[harmonics];
+  for (int k = 0; k < harmonics; ++k) {
+    before_last[k] = b_.moments[k][0];
+    last[k] = {b_.moments[k + 1][0], b_.moments[k][1]};
+  }
+  const std::complex<double> force(last[0].imag(), last[0].real()), before(b_.H_re, b_.H_im);
+  for (int n = 0; n < harmonics; ++n) {
+    b_.harmonic[n] = std::abs(last[0]);
+    for (int k = 0; k < harmonics - 1 - n; ++k)
+      before_last[k] = std::exchange(last[k], 2.0 * last[k + 1] - before_last[k]);
+  }
   const double X = b_.amplitude.end;
-  const std::complex<double> force(b_.sin_sum, b_.cos_sum), before(b_.H_re, b_.H_im);
   const std::complex<double> H = X > 0 && std::norm(force) > 0 ? -X / force : 0;
   b_.change = b_.periods > 0 && std::norm(H) > 0 ? std::abs(H - before) / std::abs(H) : 1;
   b_.H_re = H.real();
   b_.H_im = H.imag();
-  b_.sin_sum = b_.cos_sum = 0;
+  for (double (&moment)[2] : b_.moments) moment[0] = moment[1] = 0;
   b_.periods += 1;
 }
 

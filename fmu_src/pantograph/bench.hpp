@@ -7,10 +7,8 @@
 // over a period is exact for every harmonic that it resolves.
 //
 // H = -Z/F with Z, F the components of head displacement and contact force at f: minus because a positive
-// contact force pushes down, so that the static phase is 0.
+// contact force pushes down, so that the static phase is 0. Harmonics of the force are told as their peaks.
 #pragma once
-
-#include <complex>
 
 #include "state.hpp"
 
@@ -31,6 +29,8 @@ struct Ramp {
 };
 ZSPRING_MEMBERS(Ramp, c, length, end)
 
+constexpr int harmonics = 7;  // of the contact force, the first included
+
 struct BenchState {
   BenchParameters programme;  // its targets; frequency 0: none yet
   Ramp amplitude, speed;      // m; Hz
@@ -39,19 +39,21 @@ struct BenchState {
   Count steps_per_period = 0;
   double step = 0;  // s, of the grid
   Count ramp_steps = 0;
-  Count node = 0;                   // grid steps done since the ramp began
-  Count in_period = 0;              // of these since the last whole period, or the ramp
-  double offset = 0;                // s beyond that node, where a communication point cut a step
-  double carry = 0;                 // s, rounding left over by the last communication step
-  double sin_sum = 0, cos_sum = 0;  // N, of the running period
+  Count node = 0;       // grid steps done since the ramp began
+  Count in_period = 0;  // of these since the last whole period, or the ramp
+  double offset = 0;    // s beyond that node, where a communication point cut a step
+  double carry = 0;     // s, rounding left over by the last communication step
+  // N, of the running period: twice the means of F cos^k and F sin cos^k of the phase, see finish_period
+  double moments[harmonics + 1][2] = {};
   Count periods = 0;
   double H_re = 0, H_im = 0;  // m/N
   double change = 1;
+  double harmonic[harmonics] = {};  // N, peaks in the last whole period
 
   bool is_possible(double largest_step) const;
 };
 ZSPRING_MEMBERS(BenchState, programme, amplitude, speed, phase, ramp_phase, steps_per_period, step, ramp_steps, node,
-                in_period, offset, carry, sin_sum, cos_sum, periods, H_re, H_im, change)
+                in_period, offset, carry, moments, periods, H_re, H_im, change, harmonic)
 
 // Internal steps in a period of the grid: the fewest whole number of at most `largest_step` s, 16 at least.
 Count steps_in_period(double frequency, double largest_step);

@@ -53,6 +53,7 @@ DISCRETE(bench_dot_H_im, x.bench.H_im)
 DISCRETE(bench_dot_change, x.bench.change)
 DISCRETE(bench_dot_periods, x.bench.periods)
 DISCRETE(bench_dot_steps_per_period, steps_in_period(x.m.parameters.bench.frequency, x.m.parameters.solver.step))
+DISCRETE(bench_dot_harmonic, x.bench.harmonic[i])
 
 Outputs Simulation::present_outputs() const { return output_values(View(hht_, state_)); }
 Outputs Simulation::change(const MechanicalState& d) const { return output_changes(View(hht_, state_), d); }

@@ -44,6 +44,7 @@ UNITS = {
     r"energy\..*": "J",
     r"bench\.H_(re|im)": "m/N",
     r"bench\.change": "1",
+    r"bench\.harmonic": "N",
 }
 
 

@@ -29,8 +29,8 @@ def imposed_sine(frequency: float, peak: float, t: float, order: int = 0) -> flo
     )
 
 
-def receptance(reference: Reference, frequency: float, acceleration: float) -> complex:
-    """H = -Z/F in m/N over one period, from rest; drive Displacement, Hz, peak in m/s2."""
+def one_period(reference: Reference, frequency: float, acceleration: float) -> dict[str, np.ndarray]:
+    """SAMPLES values over a steady period that begins at phase 0; drive Displacement, from rest, Hz, peak in m/s2."""
     omega = 2 * math.pi * frequency
     end = math.ceil((RAMP + WAIT) * frequency) / frequency
     times = end - np.arange(SAMPLES, 0, -1) / (frequency * SAMPLES)
@@ -39,5 +39,10 @@ def receptance(reference: Reference, frequency: float, acceleration: float) -> c
         return imposed_sine(frequency, acceleration / omega**2, t, order)
 
     motion = reference.solve(np.concatenate([[0.0], times, [end]]), {"head_displacement": head}, rtol=1e-7)
-    turn = np.exp(-1j * omega * times)
-    return -(motion["head.z"][1:-1] @ turn) / (motion["contact.force"][1:-1] @ turn)
+    return {name: values[1:-1] for name, values in motion.items()}
+
+
+def receptance(reference: Reference, frequency: float, acceleration: float) -> complex:
+    """H = -Z/F in m/N over that period."""
+    motion = one_period(reference, frequency, acceleration)
+    return -np.fft.rfft(motion["head.z"])[1] / np.fft.rfft(motion["contact.force"])[1]
