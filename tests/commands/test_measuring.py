@@ -42,7 +42,7 @@ class Scripted:
 
     def get(self, names):
         done = max(self.periods, 0)
-        counts = {"solver.steps": 100, "solver.iterations": 150, "solver.refinements": 2}
+        counts = {"solver.steps": 100, "solver.iterations": 150, "solver.refinements": 2, "energy.dissipated": 0.25}
         return [5 if name == "solver.iterations_max" else counts[name] * (done + 7) for name in names]
 
     def run(self, periods: int) -> None:
@@ -54,6 +54,10 @@ class Scripted:
     @property
     def H(self) -> complex:
         return self._H(self.periods)
+
+    @property
+    def harmonics(self) -> tuple[float, ...]:
+        return (float(self.periods),) * 6
 
     @property
     def change(self) -> float:
@@ -75,7 +79,7 @@ def test_a_steady_answer_is_taken_at_the_fewest_periods():
 def test_what_it_took_is_counted_from_the_begin_of_the_point():
     point, _ = settled(lambda n: 1.0, min_periods=12)
     assert (point.steps, point.iterations, point.refinements) == (1200, 1800, 24)
-    assert point.iterations_max == 5
+    assert (point.iterations_max, point.loss, point.harmonics) == (5, 0.25, (12.0,) * 6)
     assert point.displacement == pytest.approx(1.0 / (2 * np.pi * 4) ** 2)
 
 

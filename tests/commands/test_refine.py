@@ -220,7 +220,7 @@ class Branches:
     """A bench with two steady states between 5 and 6 Hz: the one it comes from. Its state is the branch."""
 
     def __init__(self):
-        self.instance, self.branch, self.begun = self, None, []
+        self.instance, self.branch, self.begun, self.harmonics = self, None, [], ()
 
     def get(self, names):
         return [0] * len(names)

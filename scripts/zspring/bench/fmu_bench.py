@@ -9,6 +9,8 @@ from typing import Any
 from ..fmu import Instance
 from ..variables import Value
 
+HARMONICS = range(2, 8)  # of the contact force, which the benches tell beside the first
+
 
 class FmuBench:
     """Response-controlled bench of the FMU itself: one communication step covers any number of periods.
@@ -51,6 +53,11 @@ class FmuBench:
             self.periods = int(*self.instance.get(["bench.periods"]))
         real, imaginary, self.change = self.instance.get(["bench.H_re", "bench.H_im", "bench.change"])
         self.H = complex(real, imaginary)
+
+    @property
+    def harmonics(self) -> tuple[float, ...]:
+        """Peaks of HARMONICS in N over the last whole period, 0 before the first."""
+        return tuple(self.instance.get([f"bench.harmonic[{n}]" for n in HARMONICS]))
 
     def save(self) -> dict[str, Any]:
         """The state after `run`, fit for JSON."""

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..fmu import Instance
 from ..variables import Value
+from .fmu_bench import HARMONICS
 
 
 class InputBench:
@@ -31,6 +32,7 @@ class InputBench:
         self._time = self._phase = 0.0  # s; rad, at the begin of the next period
         self._frequency = self._peak = 0.0  # Hz, m; reached
         self._target = (0.0, 0.0)
+        self._force = np.zeros(0)  # N, at the ends of the steps of the last period
         self.H, self.change, self.periods = 0j, 1.0, 0
 
     def start(self, frequency: float, acceleration: float) -> None:
@@ -44,7 +46,8 @@ class InputBench:
         self._target = (frequency, acceleration / (2 * math.pi * frequency) ** 2)
         # The FMU's own bench is not used here, but its grid is.
         self.instance.set({"bench.frequency": frequency})
-        (self._steps,) = self.instance.get(["bench.steps_per_period"])
+        self._steps = int(*self.instance.get(["bench.steps_per_period"]))
+        self._force = np.zeros(self._steps)
         self.H, self.change, self.periods = 0j, 1.0, 0
 
     def run(self, periods: int) -> None:
@@ -59,11 +62,17 @@ class InputBench:
         phase = self._phase + 2 * math.pi * np.arange(1, self._steps + 1) / self._steps
         targets, analyser = peak * np.sin(phase), 2j / self._steps * np.exp(-1j * phase)
         for _ in range(periods):
-            force = analyser @ self._drive(targets)
-            H = complex(-peak / force)
+            self._force = self._drive(targets)
+            H = complex(-peak / (analyser @ self._force))
             self.change = abs(H - self.H) / abs(H) if self.periods else 1.0
             self.H = H
             self.periods += 1
+
+    @property
+    def harmonics(self) -> tuple[float, ...]:
+        """Peaks of HARMONICS in N over the last whole period, 0 before the first."""
+        spectrum = 2 / self._steps * np.abs(np.fft.rfft(self._force))
+        return tuple(spectrum[list(HARMONICS)].tolist())
 
     def save(self) -> dict[str, Any]:
         """The state after `run`, fit for JSON."""

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from ..fmu import Fmu, StepDiscarded
 from ..variables import Value, exact
-from .fmu_bench import FmuBench
+from .fmu_bench import HARMONICS, FmuBench
 from .input_bench import InputBench
 from .steady import LOOK_PERIODS, mean_response, repeats_after
 
@@ -60,7 +60,7 @@ class FrfSettings:
 class FrfPoint:
     """One point; H in m/N and what is told of it are NaN where nothing was measured, and where it failed.
 
-    H is of the last period, or of the last k together with the status "period k".
+    H and loss are of the last period, or of the last k together with the status "period k"; harmonics are of the last.
     """
 
     amplitude: float  # m/s2
@@ -74,12 +74,29 @@ class FrfPoint:
     refinements: int = 0
     iterations_max: int = 0  # of the worst step since the sweep began
     remaining: float = math.nan  # estimated distance of H from its steady state, relative to H
+    harmonics: tuple[float, ...] = (math.nan,) * len(HARMONICS)  # N, peaks of the contact force's
+    loss: float = math.nan  # J, what the FMU dissipates in a cycle, pi Z^2 Im(1/H) in the steady state
 
     @property
     def displacement(self) -> float:
         """Peak displacement of the head in m."""
         omega = 2 * math.pi * self.frequency
         return self.amplitude / omega / omega  # whose square may be beyond what numbers can be
+
+    @property
+    def force(self) -> float:
+        """Peak of the contact force's first harmonic in N."""
+        return self.displacement / abs(self.H) if self.H else math.nan
+
+    @property
+    def stiffness(self) -> float:
+        """Equivalent one of all that the head feels, inertia included, in N/m: k of 1/H = k + i omega c."""
+        return (1 / self.H).real if self.H else math.nan
+
+    @property
+    def damping(self) -> float:
+        """Equivalent one in N.s/m: c of 1/H, from the loss, which is known far better where inertia is all of 1/H."""
+        return self.loss / (2 * math.pi**2 * self.frequency * self.displacement**2)
 
 
 @dataclass(frozen=True)
@@ -203,22 +220,27 @@ def settle(
     before = bench.instance.get(counters)
     fewest = max(settings.min_periods, 2 * LOOK_PERIODS)
     status, repeat, value, change, left = NOT_SETTLED, 0, complex(math.nan, math.nan), math.nan, math.nan
+    harmonics, loss = FrfPoint.harmonics, math.nan
     H: list[complex] = []  # by period, after the ramp
+    dissipated: list[float] = []  # J, at the ends of periods, of those of the ramp as well
     try:
         while not repeat and len(H) < settings.max_periods:
             if stop.is_set():
                 return None
             bench.run(1)
+            dissipated += bench.instance.get(["energy.dissipated"])
             if bench.periods:
                 H.append(bench.H)
             if len(H) == settings.max_periods or (len(H) >= fewest and len(H) % LOOK_PERIODS == 0):
                 repeat, left = repeats_after(H, settings.tolerance)
         if repeat:
             status = SETTLED if repeat == 1 else f"{REPEATS} {repeat}"
-        value, change = mean_response(H[-max(1, repeat) :]), bench.change
+        last = max(1, repeat)
+        value, change = mean_response(H[-last:]), bench.change
+        harmonics, loss = bench.harmonics, (dissipated[-1] - dissipated[-1 - last]) / last
     except StepDiscarded as error:
         status, left = f"{FAILED}: {error}", math.nan
-    used = (int(after - earlier) for earlier, after in zip(before, bench.instance.get(counters)))
+    steps, iterations, refinements = (int(b - a) for a, b in zip(before, bench.instance.get(counters)))
     (worst,) = map(int, bench.instance.get(["solver.iterations_max"]))
-    point = FrfPoint(amplitude, frequency, status, value, bench.periods, change, *used)
-    return replace(point, iterations_max=worst, remaining=left)
+    point = FrfPoint(amplitude, frequency, status, value, bench.periods, change, steps, iterations, refinements)
+    return replace(point, iterations_max=worst, remaining=left, harmonics=harmonics, loss=loss)

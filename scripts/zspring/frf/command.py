@@ -123,7 +123,8 @@ def frf(
 ) -> None:
     """Measure the first-order FRF by stepped sine with controlled response.
 
-    Without options: the standard figure. Writes frf.csv and frf.png.
+    Without options: the standard figure. Writes frf.csv, frf.png and cycle.png: loss per cycle, equivalent stiffness
+    and damping, and harmonics 2 to 7 of the contact force.
 
     Resonances and antiresonances are measured between these frequencies until they are known, approached as the
     sweep does, some points at half the internal step: table resonances.csv, further points frf-refined.csv.

@@ -7,11 +7,14 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from ..bench.fmu_bench import HARMONICS
 from ..bench.measure import FrfPoint, Kept, Sweep
 from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
 from ..records import Record
 from ..tables import write_table
 from .report import Row
+
+_HARMONICS = [f"harmonic_{n} [N]" for n in HARMONICS]
 
 
 def frf_columns(quantity: str) -> list[str]:
@@ -32,6 +35,10 @@ def frf_columns(quantity: str) -> list[str]:
         "refinements",
         "iterations_max",
         "remaining",
+        *_HARMONICS,
+        "loss [J]",
+        "stiffness [N/m]",
+        "damping [N.s/m]",
     ]
 
 
@@ -42,7 +49,7 @@ def frf_row(point: FrfPoint, quantity: str) -> list[object]:
         *(point.frequency, point.amplitude, point.displacement, point.H.real, point.H.imag),
         *(abs(value), float(phase_degrees(value, quantity)), point.periods, point.change, point.status),
         *(point.steps, point.iterations, point.refinements, point.iterations_max),
-        point.remaining,
+        *(point.remaining, *point.harmonics, point.loss, point.stiffness, point.damping),
     ]
 
 
@@ -64,6 +71,8 @@ def frf_point(row: Mapping[str, str]) -> FrfPoint:
         refinements=int(row["refinements"]),
         iterations_max=int(row["iterations_max"]),
         remaining=number("remaining"),
+        harmonics=tuple(map(number, _HARMONICS)),
+        loss=number("loss [J]"),
     )
 
 

@@ -19,6 +19,7 @@ from ..variables import text
 from . import report
 from .bounds import linear_bounds
 from .course import Course
+from .cycle_plot import cycle_figure
 from .files import write_resonances
 from .overlay import distance_lines
 from .plot import frf_figure
@@ -89,6 +90,8 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
     levels = comparison.levels if comparison else ()
     written.append(folder / f"frf.{wanted.suffix}")
     save(frf_figure(drawn, levels, bounds, wanted.quantity, settings.stroke, title), written[-1])
+    written.append(folder / f"cycle.{wanted.suffix}")
+    save(cycle_figure({way: points for way, (points, _) in drawn.items()}, title), written[-1])
     for course in courses.values():
         course.forget()
 
