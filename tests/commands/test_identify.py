@@ -94,7 +94,7 @@ def test_all_nine_parameters_of_the_published_pantographs_come_back(tmp_path, na
         f"{key} = {{ start = {1.5 * value or 10.0}, min = {bounds[key[0]][0]}, max = {bounds[key[0]][1]} }}"
         for key, value in values.items()
     ]
-    text = 'model = "linear"\n[search]\ngenerations = 3\n[[measurement]]\nfile = "bench.csv"\n[free]\n'
+    text = 'model = "linear"\n[[measurement]]\nfile = "bench.csv"\n[free]\n'
     (tmp_path / "fit.toml").write_text(text + "\n".join(free))
     zspring(tmp_path, "identify", "fit.toml", "--output", "out")
     with Fmu() as model:
@@ -161,29 +161,31 @@ def test_the_search_finds_what_least_squares_alone_miss(tmp_path):
     problem = linear_problem(free, values, frequency, H)
     assert solve(problem).cost > 1
     with cost_record(tmp_path / "record.csv", {}, ["k1", "k2"]) as record:
-        x = search(problem, Search(generations=40), record, threading.Event(), lambda generation, cost: None)
-    found = fit(problem, x, lambda cost: None)
+        starts = search(problem, Search(), record, threading.Event(), lambda cost: None)
+    found = min((fit(problem, x, lambda cost: None) for x in starts), key=lambda each: each.cost)
     np.testing.assert_allclose(found.values, [values["k1"], values["k2"]], rtol=1e-6)
 
 
-def test_the_search_tries_the_start_values_first_and_keeps_to_the_bounds(tmp_path):
-    """Of a cost with its least value there it finds no better."""
+def test_the_search_fills_the_space_and_gives_its_best_that_lie_apart(tmp_path):
+    """64 points of a Sobol sequence in two dimensions: one in each field of a chessboard."""
 
-    class Bowl:
+    class Valleys:
         def __init__(self):
-            self.start, self.asked = np.array([0.3, 1.2]), []  # the second one beyond its bound
+            self.start, self.asked = np.array([0.3, 0.3]), []
 
         def costs(self, xs):
             self.asked += [np.array(x) for x in xs]
-            return np.array([np.sum((x - [0.3, 1.0]) ** 2) for x in xs])
+            return np.array([min(np.sum((x - at) ** 2) for at in ([0.3, 0.3], [0.7, 0.2], [0.6, 0.9])) for x in xs])
 
-    bowl = Bowl()
+    valleys, told = Valleys(), []
     with cost_record(tmp_path / "record.csv", {}, ["m1", "m2"]) as record:
-        x = search(bowl, Search(generations=2), record, threading.Event(), lambda generation, cost: None)
-    np.testing.assert_array_equal(x, [0.3, 1.0])
-    first = np.array(bowl.asked[:20])  # 10 candidates for each parameter
-    assert any(np.array_equal(each, [0.3, 1.0]) for each in first)
-    assert np.all((np.array(bowl.asked) >= 0) & (np.array(bowl.asked) <= 1)) and len(bowl.asked) == 60
+        starts = search(valleys, Search(samples=20, starts=2), record, threading.Event(), told.append)
+    asked = np.array(valleys.asked)
+    assert len(asked) == 64 and len({tuple(x) for x in np.floor(8 * asked).tolist()}) == 64
+    assert told == np.minimum.accumulate(valleys.costs(list(asked))).tolist()
+    # Neither near the start values, which are tried anyway.
+    places = sorted(starts, key=lambda x: x[0])
+    np.testing.assert_allclose(places, [[0.6, 0.9], [0.7, 0.2]], atol=0.1)
 
 
 def zspring_fit(folder: Path, free: str, extra: str = "") -> tuple[str, dict[str, float]]:
@@ -225,7 +227,7 @@ def test_the_z_spring_comes_back_from_noisy_measurements(fmu, measurement, tmp_p
     What the fit writes is a set that other tools read and that `zspring frf` takes.
     """
     write_measurement(tmp_path / "bench.csv", with_noise(measurement, 0.02, 2))
-    out, found = zspring_fit(tmp_path, START_50_PERCENT_OFF, "search = { generations = 0 }")
+    out, found = zspring_fit(tmp_path, START_50_PERCENT_OFF, "search = { samples = 0 }")
     for name in ("zspring.k", "zspring.l0", "zspring.Mf"):
         assert found[name] == pytest.approx(fmu.start(name), rel=0.01)
     # The noise alone: 2 % in H is 1.4 % in its magnitude, from 26 points of an amplitude known to a fifth.
@@ -256,7 +258,7 @@ k2 = { start = 7000, min = 3000, max = 40000 }
 c3 = { start = 105, min = 0, max = 300 }
 """
     write_measurement(tmp_path / "bench.csv", with_noise(measurement, 0.02, 3))
-    out, found = zspring_fit(tmp_path, START_50_PERCENT_OFF + others, "search = { generations = 0 }")
+    out, found = zspring_fit(tmp_path, START_50_PERCENT_OFF + others, "search = { samples = 0 }")
     for name in ("zspring.k", "zspring.l0", "zspring.Mf", "m1", "k2", "c3"):
         assert found[name] == pytest.approx(fmu.start(name), rel=0.03), name
         error = float(re.search(rf"^{re.escape(name)} +\S+ +(\S+)", out, re.MULTILINE)[1])
@@ -268,7 +270,7 @@ def test_an_interrupted_search_goes_on_to_the_same_result(measurement, tmp_path)
     write_measurement(tmp_path / "bench.csv", few)
     text = 'model = "zspring"\n[[measurement]]\nfile = "bench.csv"\n'
     text += "[free]\nm1 = { start = 9, min = 3, max = 20 }\nk2 = { start = 9000, min = 3000, max = 40000 }\n"
-    text += f"[search]\ngenerations = 5\npopulation = 6\n[fixed]\nsolver.step = {STEP}\n"
+    text += f"[search]\nsamples = 30\n[fixed]\nsolver.step = {STEP}\n"
     (tmp_path / "fit.toml").write_text(text)
     process = start(tmp_path, "identify", "fit.toml", "--output", "broken", "--jobs", f"{JOBS}")
     record = tmp_path / "broken/search.partial.csv"
@@ -298,7 +300,7 @@ def test_ctrl_c_in_the_last_jacobian_writes_nothing_and_keeps_the_search(tmp_pat
     points = {(0.25, float(f)): linear.receptance(f) for f in np.arange(1.0, 15.0)}
     write_measurement(tmp_path / "bench.csv", points)
     free = "".join(f"{key} = {{ start = {values[key]}, min = 1, max = 40000 }}\n" for key in ("m1", "k2"))
-    text = 'model = "linear"\n[[measurement]]\nfile = "bench.csv"\n[search]\ngenerations = 2\n[free]\n'
+    text = 'model = "linear"\n[[measurement]]\nfile = "bench.csv"\n[search]\nsamples = 4\nstarts = 1\n[free]\n'
     (tmp_path / "fit.toml").write_text(text + free)
     calls = []
 
@@ -346,7 +348,7 @@ def test_a_parameter_without_any_effect_is_named(fmu, tmp_path, measurement):
 zspring.Mf = { start = 0.4, min = 0.1, max = 1 }
 zspring.tau = { start = 900, min = 100, max = 5000 }
 """
-    extra = "search = { generations = 0 }"
+    extra = "search = { samples = 0 }"
     out, found = zspring_fit(tmp_path, free, extra)
     assert "the data do not determine zspring.tau" in out
     assert "zspring.Mf:" not in out and found["zspring.Mf"] == pytest.approx(fmu.start("zspring.Mf"), rel=0.02)
@@ -407,7 +409,7 @@ def test_a_static_test_alone_with_one_response_determines_the_friction(fmu, meas
         for i, (z, f, e) in enumerate(zip(displacement.tolist(), force, noise))
     ]
     (tmp_path / "static.csv").write_text("\n".join(lines) + "\n")
-    extra = 'static = { file = "static.csv" }\nsearch = { generations = 0 }'
+    extra = 'static = { file = "static.csv" }\nsearch = { samples = 0 }'
     out, found = zspring_fit(tmp_path, "zspring.Mf = { start = 0.45, min = 0.02, max = 2 }", extra)
     assert found["zspring.Mf"] == pytest.approx(fmu.start("zspring.Mf"), rel=0.02)
     assert float(re.search(r"static test: rms ([\d.]+) N", out)[1]) == pytest.approx(0.2, rel=0.2)

@@ -299,7 +299,7 @@ def test_settings_give_the_parameters_of_every_x(tmp_path):
         ("[[measurement]]", "[measurement]", r"measurement = {.*}: must be tables \[\[measurement\]\]"),
         ('"bench.csv"', '"bench.csv"\namplitude = 0', "measurement 1: amplitude = 0: must be a number above 0"),
         ('"bench.csv"', '"bench.csv"\nfixture = 1', "measurement 1: unknown key 'fixture'; did you mean fixture_mass"),
-        ("[fixed]", "[search]\ngeneration = 3\n[fixed]", "search: unknown key 'generation'; did you mean generations"),
+        ("[fixed]", "[search]\nsample = 3\n[fixed]", "search: unknown key 'sample'; did you mean samples"),
         ("[fixed]", "[search]\nseed = true\n[fixed]", "search: seed = True: must be a whole number"),
         ("[fixed]", "[search]\npoints = 2.0\n[fixed]", "search: points = 2.0: must be a whole number"),
         ("[fixed]", "[search]\npoints = 0\n[fixed]", "search: points = 0: must be a whole number of at least 1"),

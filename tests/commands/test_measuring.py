@@ -230,7 +230,7 @@ def test_a_model_of_a_measurement_sweeps_in_its_direction(own_fmu, direction):
         points = {point.frequency: point for point, _ in measure(own_fmu, settings, sweeps(settings), 1, GO_ON)}
         found[way] = np.array([points[f].H for f in frequency])
     np.testing.assert_array_equal(answer[0], found[direction])
-    np.testing.assert_array_equal(again[0], answer[0])
+    np.testing.assert_allclose(again[0], answer[0], rtol=1e-12)  # in one communication step
     for way in found.keys() - {direction}:
         assert 1e-9 < np.abs(answer[0] / found[way] - 1).max() < 5e-3
 

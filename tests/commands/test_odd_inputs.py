@@ -51,7 +51,7 @@ file = "good.csv"
 [free]
 k1 = { start = 9000, min = 5000, max = 20000 }
 [search]
-generations = 0
+samples = 0
 """
 STUDY = """design = "list"
 [vary]

@@ -157,7 +157,7 @@ def test_a_fit_is_repeated_but_not_overwritten_by_one_with_other_settings_or_dat
     text = "frequency [Hz],amplitude [m/s2],real [(m/s2)/N],imaginary [(m/s2)/N]\n" + "\n".join(rows) + "\n"
     toml = (
         'model = "linear"\n[[measurement]]\nfile = "b.csv"\n[free]\nk1 = { start = 9000, min = 5000, max = 20000 }\n'
-        "[search]\ngenerations = 0\n"
+        "[search]\nsamples = 0\n"
     )
     (tmp_path / "b.csv").write_text(text)
     (tmp_path / "fit.toml").write_text(toml)

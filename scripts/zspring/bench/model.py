@@ -7,11 +7,10 @@ import queue
 import threading
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import numpy as np
 
-from ..fmu import FmuError, Instance
+from ..fmu import FmuError, Instance, StepDiscarded
 from ..variables import Value
 from .conditions import FILE_ORDER
 from .curves import Curve
@@ -87,21 +86,36 @@ class BenchModel:
             for i in order.tolist():
                 frequency, acceleration = float(curve.frequency[i]), float(curve.acceleration[i])
                 (bench.tune if is_running else bench.start)(frequency, acceleration)
-                settings = SETTLED
-                if periods:
-                    settings = replace(SETTLED, tolerance=math.inf, min_periods=periods[i])
-                point = settle(bench, acceleration, frequency, settings, self._stop)
-                if point is None:
+                if periods and periods[i]:
+                    is_running = self._run(bench, periods[i])
+                    if is_running:
+                        H[i], used[i] = bench.H, bench.periods
+                else:
+                    point = settle(bench, acceleration, frequency, SETTLED, self._stop)
+                    if point is None:
+                        break
+                    is_running = not point.status.startswith(FAILED)
+                    if is_running:
+                        H[i], used[i] = point.H, point.periods
+                if self._stop.is_set():
                     break
-                failed = point.status.startswith(FAILED)
-                is_running = self._direction != "rest" and not failed
-                if not failed:
-                    H[i], used[i] = point.H, point.periods
+                is_running = is_running and self._direction != "rest"
         except FmuError:  # refused parameters
             pass
         finally:
             self._idle.put(instance)
         return H, tuple(used)
+
+    def _run(self, bench: FmuBench, periods: int) -> bool:
+        """For so many whole periods; False if it failed."""
+        try:
+            while not bench.periods:
+                bench.run(1)  # the ramp
+            if bench.periods < periods:
+                bench.run(periods - bench.periods)
+        except StepDiscarded:
+            return False
+        return True
 
     def _static(self, parameters: Mapping[str, Value], test: StaticTest) -> np.ndarray:
         instance = self._idle.get()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -14,6 +14,8 @@ AT_BOUND = 1e-3  # of the range, tried for being held at the bound
 SINGULAR = 1e-9  # relative to the largest singular value of the scaled Jacobian
 NOISE_FREE = 1e-12  # half the sum of squared residuals that is as good as none
 MOST_EVALUATIONS = 100
+SHORT = 1.0  # standard errors: a way at whose end the Jacobian is that of its begin
+FORETOLD = 0.5  # of a change of the residuals: a Jacobian that misses more is made anew
 
 
 @dataclass(frozen=True)
@@ -41,25 +43,23 @@ def fit(problem: Problem, x: np.ndarray, progress: Callable[[float], None]) -> F
     `progress` is told the cost of each evaluation.
     """
     result, held = _solve(problem, x, np.zeros(x.size, bool), progress), np.zeros(x.size, bool)
-    evaluations = result.nfev
     near = (result.x < AT_BOUND) | (result.x > 1 - AT_BOUND)
     if near.any():
         bounded = _solve(problem, np.where(near, result.x.round(), result.x), near, progress)
-        evaluations += bounded.nfev
+        bounded.evaluations += result.evaluations
         if bounded.cost <= result.cost * (1 + 1e-6) + NOISE_FREE:
             result, held = bounded, near
-    answer = result.answer
-    jacobian = problem.jacobian(result.x, answer, range(x.size))
+    jacobian = result.jacobian
     error, correlation = statistics(problem, result.x, jacobian, held, result.cost)
     unbound_error, _ = statistics(problem, result.x, jacobian, np.zeros_like(held), result.cost)
     return Fit(
         x=result.x,
         values=np.array([free.value(at) for free, at in zip(problem.settings.free.values(), result.x)]),
-        answer=answer,
-        cost=float(result.cost),
-        is_converged=bool(result.status > 0),
+        answer=result.answer,
+        cost=result.cost,
+        is_converged=result.is_converged,
         message=result.message,
-        evaluations=evaluations,
+        evaluations=result.evaluations,
         at_bound=held,
         standard_error=error,
         unbound_error=unbound_error,
@@ -100,29 +100,100 @@ def statistics(
     return error, correlation
 
 
-def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable[[float], None]):
-    """scipy's result for the parameters that are not held, x complete, and `answer` at the solution."""
+@dataclass
+class _Solution:
+    """Of least squares: x (n,), the answer there, and the Jacobian (m, n) there or a standard error away."""
+
+    x: np.ndarray
+    answer: Answer
+    cost: float
+    jacobian: np.ndarray
+    message: str = ""
+    is_converged: bool = False
+    evaluations: int = 1
+
+
+def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable[[float], None]) -> _Solution:
+    """Least squares for the parameters that are not held, from x.
+
+    The optimiser sees answers in as many periods as the one where it began took. At its end as many as are needed
+    are taken again, and it goes on from there unless the way was short.
+    """
+
+    def at(x: np.ndarray) -> tuple[Answer, float]:
+        (answer,) = problem.answers([x])
+        residuals = problem.residuals(answer)
+        cost = 0.5 * float(residuals @ residuals)
+        progress(cost)
+        return answer, cost
+
+    answer, cost = at(x)
+    found = _Solution(x, answer, cost, problem.jacobian(x, answer, range(x.size)))
+    while True:
+        x, message, is_converged, count = _descend(problem, found, held, progress)
+        found = replace(found, message=message, is_converged=is_converged, evaluations=found.evaluations + count)
+        answer, cost = at(x)
+        if cost >= found.cost:
+            return found
+        is_near = _way(problem, found, x) < SHORT
+        found = replace(found, x=x, answer=answer, cost=cost)
+        if is_converged and problem.is_costly and is_near:
+            return found
+        found.jacobian = problem.jacobian(x, answer, range(x.size))
+        if not is_converged or not problem.is_costly:
+            return found
+
+
+def _way(problem: Problem, found: _Solution, x: np.ndarray) -> float:
+    """From there to x (n,), in standard errors."""
+    residuals = problem.residuals(found.answer)
+    variance = max(2 * found.cost, NOISE_FREE) / max(residuals.size - x.size, 1)
+    return float(np.linalg.norm(found.jacobian @ (x - found.x)) / np.sqrt(variance))
+
+
+def _descend(
+    problem: Problem, start: _Solution, held: np.ndarray, progress: Callable[[float], None]
+) -> tuple[np.ndarray, str, bool, int]:
+    """scipy's least squares: its x, message, whether it converged, and its evaluations.
+
+    Where a Jacobian is costly it is made up to date from the evaluations (Broyden, A class of methods for solving
+    nonlinear simultaneous equations, 1965) as long as it foretells them.
+    """
     kept = np.flatnonzero(~held)
-    answers: dict[bytes, Answer] = {}
+    answers = {start.x[kept].tobytes(): start.answer}
+    last: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None  # point, residuals, Jacobian
 
     def complete(part: np.ndarray) -> np.ndarray:
-        whole = x.copy()
+        whole = start.x.copy()
         whole[kept] = part
         return whole
 
     def function(part: np.ndarray) -> np.ndarray:
-        (answer,) = problem.answers([complete(part)])
-        answers[part.tobytes()] = answer
-        residuals = problem.residuals(answer)
+        key = part.tobytes()
+        if key not in answers:
+            (answers[key],) = problem.answers([complete(part)], start.answer)
+        residuals = problem.residuals(answers[key])
         progress(0.5 * float(residuals @ residuals))
         return residuals
 
     def jacobian(part: np.ndarray) -> np.ndarray:
-        return problem.jacobian(complete(part), answers[part.tobytes()], kept)
+        nonlocal last
+        answer = answers[part.tobytes()]
+        residuals, J = problem.residuals(answer), start.jacobian[:, kept]
+        if last is not None:
+            point, before, J = last
+            step, change = part - point, residuals - before
+            missed = change - J @ step
+            if problem.is_costly and np.linalg.norm(missed) < FORETOLD * np.linalg.norm(change):
+                J = J + np.outer(missed, step) / (step @ step)
+            else:
+                J = problem.jacobian(complete(part), answer, kept)
+        last = part.copy(), residuals, J
+        return J
 
     result = least_squares(
         function,
-        x[kept],
+        start.x[kept],
         jac=jacobian,
         bounds=(0.0, 1.0),
         method="trf",
@@ -132,6 +203,4 @@ def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable
         gtol=None,
         max_nfev=MOST_EVALUATIONS,
     )
-    result.answer = answers[result.x.tobytes()]
-    result.x = complete(result.x)
-    return result
+    return complete(result.x), result.message, bool(result.status > 0), result.nfev

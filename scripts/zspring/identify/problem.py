@@ -16,9 +16,10 @@ from ..receptance import receptance
 from ..variables import Value
 from .settings import Settings
 
+# Good enough to find the right valley. The step, in s, is not for differences: those with friction are 30 % off.
+COARSE_STEP, COARSE_TOLERANCE = 2e-3, 1e-2
 # Residual of a point that the model could not compute: 10 in the logarithm, or 10 times the mean square.
 PENALTY = 10.0
-COARSE_STEP = 2e-3  # s
 
 
 @dataclass(frozen=True)
@@ -35,13 +36,18 @@ class Model(Protocol):
 
     relative_step   of a parameter, which differences of the answers need
     tolerance       relative change of cost or x at which least squares may end
+    is_costly       so that a Jacobian by differences in each iteration would be most of the work
     """
 
     relative_step: float
     tolerance: float
+    is_costly: bool
 
     def answers(self, candidates: Sequence[Mapping[str, Value]], like: Answer | None = None) -> list[Answer]:
-        """One answer for each set of parameters; `like`: comparable with this one to the smallest detail."""
+        """One answer for each set of parameters.
+
+        like    in as many periods as this answer took, so that they depend smoothly on the parameters
+        """
 
     def with_curves(self, curves: Sequence[Curve]) -> Model:
         """The same model for other curves."""
@@ -52,6 +58,7 @@ class ThreeMassModel:
 
     relative_step = 1e-7
     tolerance = 1e-12
+    is_costly = False
 
     def __init__(self, curves: Sequence[Curve], defaults: Mapping[str, Value]):
         self._curves, self._defaults = curves, defaults
@@ -73,6 +80,7 @@ class ZSpringModel:
     # Coulomb's law makes H a little rough in the parameters: at 0.3 % the differences average over that.
     relative_step = 3e-3
     tolerance = 1e-5
+    is_costly = True
 
     def __init__(self, bench: BenchModel, curves: Sequence[Curve], static: StaticTest | None):
         self._bench, self._curves, self._static = bench, curves, static
@@ -97,6 +105,7 @@ class Problem:
         self.settings, self.curves, self.static = settings, list(curves), static
         self._model = model
         self.relative_step, self.tolerance = model.relative_step, model.tolerance
+        self.is_costly = model.is_costly
 
     def thinned(self, points: int) -> Problem:
         """The same problem on a part: at most so many points of each curve, and steps of at least 2 ms.
@@ -111,15 +120,19 @@ class Problem:
         if "solver.step" in fixed:
             fixed["solver.step"] = max(fixed["solver.step"], COARSE_STEP)
         settings = self.settings.model_copy(update={"fixed": fixed})
-        return Problem(settings, self._model.with_curves(curves), curves, self.static)
+        thinned = Problem(settings, self._model.with_curves(curves), curves, self.static)
+        if self.is_costly:
+            thinned.tolerance = max(self.tolerance, COARSE_TOLERANCE)
+        return thinned
 
     @property
     def start(self) -> np.ndarray:
         """x (n,) of the start values."""
         return np.array([free.x(free.start) for free in self.settings.free.values()])
 
-    def answers(self, xs: Sequence[np.ndarray]) -> list[Answer]:
-        return self._model.answers([self.settings.parameters(x) for x in xs])
+    def answers(self, xs: Sequence[np.ndarray], like: Answer | None = None) -> list[Answer]:
+        """As Model.answers."""
+        return self._model.answers([self.settings.parameters(x) for x in xs], like)
 
     def residuals(self, answer: Answer) -> np.ndarray:
         """Residuals (m,): real and imaginary part of each point, then the static test; finite always.
@@ -161,5 +174,5 @@ class Problem:
             step = min(self.relative_step * scale, 0.25)
             steps.append(step if at + step <= 1 else -step)
         shifted = [x + step * np.eye(x.size)[i] for i, step in zip(columns, steps)]
-        answers = self._model.answers([self.settings.parameters(y) for y in shifted], like=answer)
+        answers = self.answers(shifted, like=answer)
         return np.column_stack([(self.residuals(other) - base) / step for other, step in zip(answers, steps)])

@@ -37,7 +37,8 @@ from .settings import LINEAR_PARAMETERS, Settings
 
 # Of the bench, the line and the solver, so not of a pantograph.
 OTHER_PARAMETERS = ("drive", "bench.", "static_force", "contact.", "solver.")
-FINE = 5  # parts between two points of a drawn curve
+FINE = 3  # parts between two points of a drawn curve
+WORSE = 1.1  # times the cost: another minimum
 
 
 def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str, jobs: int) -> None:
@@ -79,11 +80,11 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
             log.write(f"settings {path}:\n{path.read_text(encoding='utf-8')}")
             begin = time.perf_counter()
             x = problem.start
-            if settings.search.generations:
+            if settings.search.samples:
                 x, record = _search(fmu, problem, folder, stop, log)
             result = _fit(problem, x, "least squares", stop, log)
             drawn = _drawn(problem, model, result, stop)
-            if settings.search.generations:
+            if settings.search.samples:
                 record.path.unlink()
         finally:
             bench.close()
@@ -138,28 +139,29 @@ def _keep_others(path: Path, head: Mapping[str, str]) -> None:
 def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[np.ndarray, Record[Cost]]:
     """Where to begin the fit, and the record of the search, which may be removed after it.
 
-    On a part of the points: the global search, then least squares from its best and from the start values.
+    On a part of the points: the search, then least squares from the start values and from its best.
     """
     settings = problem.settings
     coarse = problem.thinned(settings.search.points)
     record = cost_record(folder / "search.partial.csv", _head(fmu, settings), list(settings.free))
     if record.results:
         print(f"going on after {len(record.results)} candidates in {record.path}")
-    with record, tqdm(total=settings.search.generations, desc="search", unit=" generations", disable=None) as bar:
+    count = settings.search.candidates(problem.start.size)
+    with record, tqdm(total=count, desc="search", unit=" candidates", disable=None) as bar:
 
-        def progress(generation: int, cost: float) -> None:
-            log.write(f"search, generation {generation}: best cost {cost:.6g}")
+        def progress(cost: float) -> None:
             bar.set_postfix_str(f"cost {cost:.4g}", refresh=False)
             bar.update()
 
         found = search(coarse, settings.search, record, stop, progress)
+    names = ["the start values", *(f"start {i} of the search" for i in range(1, len(found) + 1))]
     fits = {
         name: _fit(coarse, x, f"least squares on a part, from {name}", stop, log)
-        for name, x in {"the start values": problem.start, "the search": found}.items()
+        for name, x in zip(names, [problem.start, *found])
     }
     best = min(fits, key=lambda name: fits[name].cost)
     for name, other in fits.items():
-        if other.cost > 1.01 * fits[best].cost + 1e-9:
+        if other.cost > WORSE * fits[best].cost + 1e-9:
             log.say(
                 f"from {name} least squares end in a worse minimum (cost {other.cost:.4g}) than from {best} "
                 f"({fits[best].cost:.4g})"

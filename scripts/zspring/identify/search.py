@@ -1,6 +1,6 @@
-"""Global search by differential evolution, which goes on after an interruption.
+"""Where least squares begin: the best of a Sobol sequence, which goes on after an interruption.
 
-Every cost that was computed is kept in a file. The search is deterministic, so a search begun again asks for
+Every cost that was computed is kept in a file. The sequence is deterministic, so a search begun again asks for
 the same candidates in the same order, and finds those it has had in the file.
 """
 
@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import differential_evolution
+from scipy.stats import qmc
 
 from ..interrupt import Interrupted
 from ..records import Record
@@ -19,6 +19,8 @@ from .problem import Problem
 from .settings import Search
 
 Cost = tuple[tuple[float, ...], float]  # of an x
+
+APART = 0.1  # of the range of any parameter: starts of which neither leads where the other does
 
 
 def cost_record(path: Path, head: Mapping[str, str], names: Sequence[str]) -> Record[Cost]:
@@ -33,51 +35,33 @@ def cost_record(path: Path, head: Mapping[str, str], names: Sequence[str]) -> Re
 
 
 def search(
-    problem: Problem,
-    settings: Search,
-    record: Record[Cost],
-    stop: threading.Event,
-    progress: Callable[[int, float], None],
-) -> np.ndarray:
-    """The best x (n,) after at most the given generations, the start values among the first candidates.
+    problem: Problem, settings: Search, record: Record[Cost], stop: threading.Event, progress: Callable[[float], None]
+) -> list[np.ndarray]:
+    """Where least squares begin: x (n,), the best first, apart from one another and from the start values.
 
-    progress    is told the generation and the best cost so far
+    The sequence fills the space between the bounds evenly (Sobol 1967, scrambled by the seed).
+    progress    is told the best cost so far after each candidate
     Raises Interrupted once `stop` is set; the costs so far are in the record.
     """
-
     known = dict(record.results)
-
-    def compute(xs: list[np.ndarray]) -> np.ndarray:
-        missing = [x for x in xs if tuple(x.tolist()) not in known]
-        costs = problem.costs(missing) if missing else ()
-        if stop.is_set():
-            raise Interrupted(
-                f"interrupted; the global search so far is kept in {record.path}; the same command goes on from there"
-            )
-        for x, cost in zip(missing, costs):
-            known[tuple(x.tolist())] = float(cost)
-            record.append((tuple(x.tolist()), float(cost)))
-        return np.array([known[tuple(x.tolist())] for x in xs])
-
-    generation = 0
-
-    def report(intermediate_result) -> None:
-        nonlocal generation
-        generation += 1
-        progress(generation, float(intermediate_result.fun))
-
-    size = problem.start.size
-    result = differential_evolution(
-        lambda x: 0.0,  # never called: the workers below compute whole generations
-        [(0.0, 1.0)] * size,
-        maxiter=settings.generations,
-        popsize=settings.population,
-        rng=settings.seed,
-        x0=np.clip(problem.start, 0.0, 1.0),
-        tol=1e-2,
-        polish=False,
-        updating="deferred",
-        workers=lambda _, xs: compute([np.array(x) for x in xs]),
-        callback=report,
-    )
-    return result.x
+    count = settings.candidates(problem.start.size)
+    xs = qmc.Sobol(problem.start.size, rng=settings.seed).random_base2(count.bit_length() - 1)
+    best = np.inf
+    for x in xs:
+        key = tuple(x.tolist())
+        if key not in known:
+            (cost,) = problem.costs([x])
+            if stop.is_set():
+                raise Interrupted(
+                    f"interrupted; the search so far is kept in {record.path}; the same command goes on from there"
+                )
+            known[key] = float(cost)
+            record.append((key, float(cost)))
+        best = min(best, known[key])
+        progress(best)
+    starts: list[np.ndarray] = []
+    for x in sorted(xs, key=lambda x: known[tuple(x.tolist())]):
+        is_apart = all(np.max(np.abs(x - other)) > APART for other in (problem.start, *starts))
+        if is_apart and len(starts) < settings.starts:
+            starts.append(x)
+    return starts

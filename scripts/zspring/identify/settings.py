@@ -78,12 +78,16 @@ class Free(Table):
 
 
 class Search(Table):
-    """Differential evolution before the least squares."""
+    """Where least squares begin besides the start values: the best of a Sobol sequence between the bounds."""
 
-    generations: int = Field(default=12, ge=0, le=100_000, description="at most; 0 for none")
-    population: int = Field(default=10, ge=1, le=10_000, description="candidates for each free parameter")
+    samples: int = Field(default=16, ge=0, le=100_000, description="for each free parameter, at least; 0 for none")
+    starts: int = Field(default=2, ge=1, le=1000, description="at most, of the best of these")
     points: int = Field(default=12, ge=1, description="at most for each amplitude")
     seed: int = Field(default=1, ge=0)
+
+    def candidates(self, parameters: int) -> int:
+        """How many, a power of 2, at which the sequence is even."""
+        return 1 << (self.samples * parameters - 1).bit_length()
 
 
 class Static(Table):
@@ -145,7 +149,7 @@ class Settings(Table):
         search = content.get("search", {})
         if content.get("model") != "linear" or not isinstance(search, Mapping):
             return content
-        return {"error": "linear", **content, "search": {"generations": 300, "points": 1000, **search}}
+        return {"error": "linear", **content, "search": {"samples": 200, "starts": 20, "points": 1000, **search}}
 
     @model_validator(mode="after")
     def _fit_together(self) -> Settings:
