@@ -35,6 +35,7 @@ SYMBOLS = {
     "mrad": "milliradian",
     "deg": "degree",
     "°": "degree",
+    "%": "percent",
     "g": "standard_gravity",
     # As turns in a second, so that they are told from rad/s.
     "Hz": "turn/second",
@@ -48,7 +49,7 @@ SUPERSCRIPTS = str.maketrans("⁻¹²³⁴", "-1234")
 PRODUCTS = "*.·⋅ "
 NONE = ("", "1", "-")  # of a number without dimension
 
-_TOKEN = re.compile(r"([^\W\d_]+|°)(?:\^|\*\*)?(-?\d+)?|(\d+)|([/*().·⋅ ])")
+_TOKEN = re.compile(r"([^\W\d_]+|°|%)(?:\^|\*\*)?(-?\d+)?|(\d+)|([/*().·⋅ ])")
 
 
 class UnitError(ZSpringError):

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from zspring.bench.curves import Curve
+from zspring.bench.curves import Curve, Harmonics
 from zspring.bench.static_test import StaticTest
 from zspring.fmu import Fmu
 from zspring.identify.fit import Fit, statistics
@@ -132,6 +132,39 @@ def test_logarithmic_residuals_are_the_errors_of_magnitude_and_phase():
     np.testing.assert_allclose(
         problem.residuals(Answer([MEASURED * np.exp(off)], None)), [0.1, -0.3, 0.05, 0.2, 0.1, -0.4], atol=1e-12
     )
+
+
+ERROR = np.array([[0.01, 0.02], [0.05, 0.01], [0.002, 0.004]])
+
+
+def test_weighted_residuals_count_in_standard_errors_of_each_point():
+    """The model's own scatter, 2e-4, joins them: of a point that is known to 0.2 % it takes 0.5 %."""
+    problem = problem_of(weights="errors")
+    problem.curves = [replace(problem.curves[0], error=ERROR)]
+    off = np.array([0.01 + 0.02j, -0.05 + 0.01j, 0.004 - 0.004j])
+    residuals = problem.residuals(Answer([MEASURED * np.exp(off)], None))
+    np.testing.assert_allclose(residuals, [1, -1, 2, 1, 1, -1], rtol=0.006)
+    assert residuals[2] == pytest.approx(2 / np.hypot(1, 0.1), rel=1e-9)
+
+
+@pytest.mark.parametrize("weights", ["equal", "errors"])
+def test_harmonics_count_over_the_first_one_or_in_standard_errors(weights):
+    """Of orders 3 and 5 alone. The first one is displacement over receptance."""
+    peak = np.arange(18.0).reshape(3, 6)
+    problem = problem_of(harmonics=(3, 5), weights=weights)
+    curve = replace(problem.curves[0], error=ERROR, harmonics=Harmonics(peak, np.full((3, 6), 0.5)))
+    problem.curves = [curve]
+    computed = peak + np.array([9.0, 1.0, 9.0, -2.0, 9.0, 9.0])
+    residuals = problem.residuals(Answer([MEASURED], None, None, [computed]))[6:]
+    first = 1 / (2 * np.pi * FREQUENCY) ** 2 / np.abs(MEASURED)
+    scale = first if weights == "equal" else np.hypot(0.5, 2e-4 * first)
+    np.testing.assert_allclose(residuals, np.outer(1 / scale, [1.0, -2.0]).ravel(), rtol=1e-12)
+
+
+def test_standard_errors_of_weighted_residuals_are_widened_by_a_misfit_and_never_narrowed():
+    problem = problem_of(weights="errors")
+    assert [problem.variance(cost, 4) for cost in (0.5, 2.0, 8.0)] == [1, 1, 4]
+    assert [problem_of().variance(cost, 4) for cost in (0.5, 2.0, 8.0)] == [0.25, 1, 4]
 
 
 @pytest.mark.parametrize("quantity, wanted", [("receptance", MEASURED), ("stiffness", 1 / MEASURED)])

@@ -222,17 +222,17 @@ def test_a_model_of_a_measurement_sweeps_in_its_direction(own_fmu, direction):
     with own_fmu.instances() as instances:
         model = BenchModel(instances, direction, GO_ON)
         ((answer,),) = model.receptances([{}], [curve])
-        ((again,),) = model.receptances([{}], [curve], [answer[1]])
+        ((again,),) = model.receptances([{}], [curve], [answer.periods])
         model.close()
     found = {}
     for way in ("up", "down", "rest"):
         settings = FrfSettings((2.0,), tuple(frequency), direction=way, tolerance=2e-4)
         points = {point.frequency: point for point, _ in measure(own_fmu, settings, sweeps(settings), 1, GO_ON)}
         found[way] = np.array([points[f].H for f in frequency])
-    np.testing.assert_array_equal(answer[0], found[direction])
-    np.testing.assert_allclose(again[0], answer[0], rtol=1e-12)  # in one communication step
+    np.testing.assert_array_equal(answer.H, found[direction])
+    np.testing.assert_allclose(again.H, answer.H, rtol=1e-12)  # in one communication step
     for way in found.keys() - {direction}:
-        assert 1e-9 < np.abs(answer[0] / found[way] - 1).max() < 5e-3
+        assert 1e-9 < np.abs(answer.H / found[way] - 1).max() < 5e-3
 
 
 # The bench outside the FMU

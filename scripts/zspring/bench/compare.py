@@ -90,10 +90,10 @@ def compare_frf(
             (found,) = model.receptances([given], curves)
         finally:
             model.close()
-    late = sum(taken >= SETTLED.max_periods for _, periods in found for taken in periods)
+    late = sum(taken >= SETTLED.max_periods for each in found for taken in each.periods)
     if late:
         remarks.append(f"{late} points of the model had not settled after {SETTLED.max_periods} periods")
-    levels = [LevelComparison(c, H, band_errors(c, H, edges)) for c, (H, _) in zip(curves, found)]
+    levels = [LevelComparison(c, each.H, band_errors(c, each.H, edges)) for c, each in zip(curves, found)]
     if not stop.is_set() and not any(np.isfinite(c.computed).any() for c in levels):
         raise ZSpringError(f"{source.path}: no point could be computed with these parameters")
     return FrfComparison(levels, given, swept, remarks)

@@ -15,6 +15,17 @@ WRONG_SIGN = 'is it counted as contact force (force = "contact")?'
 
 
 @dataclass(frozen=True)
+class Harmonics:
+    """Of the contact force, of orders 2 to 7; NaN where one was not measured."""
+
+    peak: np.ndarray  # (n, 6) N
+    error: np.ndarray  # (n, 6) N, standard errors; NaN where they are not known
+
+    def at(self, points: np.ndarray) -> Harmonics:
+        return Harmonics(self.peak[points], self.error[points])
+
+
+@dataclass(frozen=True)
 class Curve:
     """Receptance measured at one level of the amplitude, in the order of the file."""
 
@@ -22,6 +33,13 @@ class Curve:
     frequency: np.ndarray  # (n,) Hz
     acceleration: np.ndarray  # (n,) m/s2, peak, of each point its own
     H: np.ndarray  # (n,) m/N, complex
+    error: np.ndarray | None = None  # (n, 2) standard errors: of the magnitude, relative, and of the phase, rad
+    harmonics: Harmonics | None = None
+
+    @property
+    def displacement(self) -> np.ndarray:
+        """Peaks (n,) in m."""
+        return self.acceleration / (2 * np.pi * self.frequency) ** 2
 
     def within(self, band: tuple[float, float]) -> Curve:
         """The points with frequencies in the band (Hz)."""
@@ -38,11 +56,18 @@ class Curve:
         places, known = np.arange((self.frequency.size - 1) * parts + 1) / parts, np.arange(self.frequency.size)
         acceleration = np.exp(np.interp(places, known, np.log(self.acceleration)))
         unknown = np.full(places.shape, np.nan + 0j)
-        return replace(self, frequency=np.interp(places, known, self.frequency), acceleration=acceleration, H=unknown)
+        return Curve(self.label, np.interp(places, known, self.frequency), acceleration, unknown)
 
     def at(self, points: np.ndarray) -> Curve:
         """Only some points, by index or by mask."""
-        return replace(self, frequency=self.frequency[points], acceleration=self.acceleration[points], H=self.H[points])
+        return Curve(
+            self.label,
+            self.frequency[points],
+            self.acceleration[points],
+            self.H[points],
+            None if self.error is None else self.error[points],
+            self.harmonics and self.harmonics.at(points),
+        )
 
 
 @dataclass(frozen=True)
@@ -59,7 +84,16 @@ class Source:
         """With this sign of the force, and without the inertia of the fixture: F_head = F_cell - m a."""
         H = SENSES[self.force] * curve.H
         stiffness = 1 / H + self.fixture_mass * (2 * np.pi * curve.frequency) ** 2
-        return replace(curve, H=1 / stiffness)
+        return replace(curve, H=1 / stiffness, error=_turned(curve.error, 1 / stiffness / H))
+
+
+def _turned(error: np.ndarray | None, factor: np.ndarray) -> np.ndarray | None:
+    """Errors (n, 2) of a logarithm that is multiplied by complex factors (n,): d ln(1/D) = -dD/D, dD being the same."""
+    if error is None:
+        return None
+    real, imaginary = factor.real**2, factor.imag**2
+    magnitude, phase = error.T**2
+    return np.sqrt(np.column_stack([real * magnitude + imaginary * phase, imaginary * magnitude + real * phase]))
 
 
 def in_band(curves: Sequence[Curve], band: tuple[float, float]) -> list[Curve]:

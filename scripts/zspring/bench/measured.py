@@ -9,21 +9,28 @@ The file is a table as `tables.py` reads it, with the columns, in any order:
     real [UNIT], imaginary [UNIT], or magnitude [UNIT], phase [deg or rad]
                         the unit tells the kind of response, see `responses`
 
+    magnitude_error     standard error of the magnitude, in its unit or in %
+    phase_error [deg or rad]    that of the phase; both or none
+    harmonic_2 [N] ... harmonic_7 [N]   peaks of the contact force's harmonics, as many as were measured, and their
+    harmonic_2_error [N] ...            standard errors, if they are known
+
 Other columns are not read. The file that `zspring frf` writes has this form (its H_re and H_im are read);
 points that it marks as left out or failed are passed over. What its head says of the bench, `conditions` reads.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import ZSpringError
-from ..tables import read_table
+from ..tables import Table, read_table
 from ..units import UnitError
 from .conditions import is_universal
-from .curves import Curve, Source
+from .curves import Curve, Harmonics, Source
+from .fmu_bench import HARMONICS
 from .levels import levels_of, named_levels
 from .responses import acceleration_of, response_of
 from .uff import read_uff
@@ -85,4 +92,33 @@ def read_csv(path: Path, amplitude: float | None) -> list[Curve]:
         levels = named_levels(table["level"].cells)
     else:
         levels = levels_of(frequency, acceleration, steps, step_unit)
-    return [Curve(level.label, *(x[level.points] for x in (frequency, acceleration, H))) for level in levels]
+    whole = Curve("", frequency, acceleration, H, _errors(table, kind, np.abs(value)), _harmonics(table))
+    return [replace(whole.at(level.points), label=level.label) for level in levels]
+
+
+def _errors(table: Table, kind: str, magnitude: np.ndarray) -> np.ndarray | None:
+    """Standard errors (n, 2) as a curve has them, of responses that stand in columns of this kind."""
+    told = [name for name in ("magnitude error", "phase error") if name in table]
+    if not told:
+        return None
+    if len(told) == 1:
+        raise ZSpringError(f"{table.path}: {told[0].replace(' ', '_')} alone: needs magnitude_error and phase_error")
+    unit = table.unit("magnitude error")
+    if unit == table.unit(kind):
+        relative = table.numbers("magnitude error", positive=True) / magnitude
+    else:
+        relative = table.numbers("magnitude error", "1", positive=True)
+    return np.column_stack([relative, table.numbers("phase error", "rad", positive=True)])
+
+
+def _harmonics(table: Table) -> Harmonics | None:
+    """Those that have a column."""
+    names = [f"harmonic {n}" for n in HARMONICS]
+    if not any(name in table for name in names):
+        return None
+    unknown = np.full(len(table.lines), np.nan)
+    peak, error = (
+        np.column_stack([table.numbers(name, "N") if name in table else unknown for name in columns])
+        for columns in (names, [f"{name} error" for name in names])
+    )
+    return Harmonics(peak, error)

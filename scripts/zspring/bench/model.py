@@ -7,6 +7,7 @@ import queue
 import threading
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..fmu import FmuError, Instance, StepDiscarded
 from ..variables import Value
 from .conditions import FILE_ORDER
 from .curves import Curve
-from .fmu_bench import FmuBench
+from .fmu_bench import HARMONICS, FmuBench
 from .measure import FAILED, FrfSettings, settle
 from .static_test import StaticTest
 
@@ -22,6 +23,15 @@ Periods = tuple[int, ...]  # for each point of a curve
 
 # How far a point may be from its steady state: far below any measurement.
 SETTLED = FrfSettings(tolerance=2e-4)
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """Of one curve; NaN where it failed."""
+
+    H: np.ndarray  # (n,) m/N
+    harmonics: np.ndarray  # (n, 6) N, peaks of HARMONICS of the contact force
+    periods: Periods  # that it took
 
 
 class BenchModel:
@@ -52,8 +62,8 @@ class BenchModel:
         candidates: Sequence[Mapping[str, Value]],
         curves: Sequence[Curve],
         periods: Sequence[Periods] | None = None,
-    ) -> list[list[tuple[np.ndarray, Periods]]]:
-        """For each candidate and each curve: H (n,) in m/N, NaN where it failed, and the periods it took.
+    ) -> list[list[Simulated]]:
+        """For each candidate what it has for each curve.
 
         periods     of each curve: run every point for so many instead of until it is steady. The answer then
                     depends smoothly on the parameters, which differences need.
@@ -73,10 +83,9 @@ class BenchModel:
     def close(self) -> None:
         self._pool.shutdown(cancel_futures=True)
 
-    def _sweep(
-        self, parameters: Mapping[str, Value], curve: Curve, periods: Periods | None
-    ) -> tuple[np.ndarray, Periods]:
+    def _sweep(self, parameters: Mapping[str, Value], curve: Curve, periods: Periods | None) -> Simulated:
         H, used = np.full(curve.frequency.shape, math.nan + 0j), [0] * curve.frequency.size
+        harmonics = np.full((len(used), len(HARMONICS)), math.nan)
         order = np.argsort(curve.frequency, kind="stable")[:: -1 if self._direction == "down" else 1]
         if self._direction == FILE_ORDER:
             order = np.arange(len(used))
@@ -89,14 +98,14 @@ class BenchModel:
                 if periods and periods[i]:
                     is_running = self._run(bench, periods[i])
                     if is_running:
-                        H[i], used[i] = bench.H, bench.periods
+                        H[i], used[i], harmonics[i] = bench.H, bench.periods, bench.harmonics
                 else:
                     point = settle(bench, acceleration, frequency, SETTLED, self._stop)
                     if point is None:
                         break
                     is_running = not point.status.startswith(FAILED)
                     if is_running:
-                        H[i], used[i] = point.H, point.periods
+                        H[i], used[i], harmonics[i] = point.H, point.periods, bench.harmonics
                 if self._stop.is_set():
                     break
                 is_running = is_running and self._direction != "rest"
@@ -104,7 +113,7 @@ class BenchModel:
             pass
         finally:
             self._idle.put(instance)
-        return H, tuple(used)
+        return Simulated(H, harmonics, tuple(used))
 
     def _run(self, bench: FmuBench, periods: int) -> bool:
         """For so many whole periods; False if it failed."""

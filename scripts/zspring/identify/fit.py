@@ -73,8 +73,9 @@ def statistics(
     """Standard errors (n,) and correlations (n, n) from the Jacobian (m, n) with respect to x.
 
     cov = s^2 (J^T J)^-1 with s^2 = 2 cost / (m - n), for residuals that are independent and of one size
-    (Bates and Watts, Nonlinear Regression Analysis, 1988, section 2.2). A direction in which the residuals do
-    not change makes the standard errors of its parameters infinite.
+    (Bates and Watts, Nonlinear Regression Analysis, 1988, section 2.2); where they are in standard errors of the
+    measurement, s^2 is at least 1. A direction in which the residuals do not change makes the standard errors of its
+    parameters infinite.
     """
     n = x.size
     error, correlation = np.full(n, np.nan), np.full((n, n), np.nan)
@@ -88,7 +89,7 @@ def statistics(
     usable = singular > SINGULAR * singular[0]
     lost = np.any(np.abs(directions[~usable]) > 0.1, axis=0) | ~np.any(J, axis=0)
     inverse = directions[usable].T / singular[usable]
-    variance = 2 * cost / max(J.shape[0] - kept.size, 1)
+    variance = problem.variance(cost, J.shape[0] - kept.size)
     covariance = variance * (inverse @ inverse.T) / np.outer(scale, scale)
     sigma = np.sqrt(np.diag(covariance))
     slopes = np.array([free.slope(at) for free, at in zip(problem.settings.free.values(), x)])[kept]
@@ -147,7 +148,7 @@ def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable
 def _way(problem: Problem, found: _Solution, x: np.ndarray) -> float:
     """From there to x (n,), in standard errors."""
     residuals = problem.residuals(found.answer)
-    variance = max(2 * found.cost, NOISE_FREE) / max(residuals.size - x.size, 1)
+    variance = max(problem.variance(found.cost, residuals.size - x.size), NOISE_FREE)
     return float(np.linalg.norm(found.jacobian @ (x - found.x)) / np.sqrt(variance))
 
 

@@ -9,7 +9,8 @@ from typing import Protocol
 import numpy as np
 
 from ..bench.curves import Curve
-from ..bench.model import BenchModel, Periods
+from ..bench.fmu_bench import HARMONICS
+from ..bench.model import SETTLED, BenchModel, Periods
 from ..bench.responses import as_quantity
 from ..bench.static_test import StaticTest
 from ..receptance import receptance
@@ -22,6 +23,10 @@ COARSE_STEP, COARSE_TOLERANCE = 2e-3, 1e-2
 PENALTY = 10.0
 
 
+def _finite(off: np.ndarray, otherwise: float) -> np.ndarray:
+    return np.where(np.isfinite(off), off, otherwise)
+
+
 @dataclass(frozen=True)
 class Answer:
     """What the model has for one x."""
@@ -29,6 +34,7 @@ class Answer:
     curves: list[np.ndarray]  # receptances (n,) in m/N, NaN where it failed
     static: np.ndarray | None  # forces (n,) in N
     periods: list[Periods] | None = None
+    harmonics: list[np.ndarray] | None = None  # (n, 6) in N, as a curve's; NaN where it failed
 
 
 class Model(Protocol):
@@ -91,7 +97,8 @@ class ZSpringModel:
         if self._static:
             forces = list(self._bench.static_forces(candidates, self._static))
         return [
-            Answer([H for H, _ in row], force, [periods for _, periods in row]) for row, force in zip(measured, forces)
+            Answer([p.H for p in row], force, [p.periods for p in row], [p.harmonics for p in row])
+            for row, force in zip(measured, forces)
         ]
 
     def with_curves(self, curves: Sequence[Curve]) -> ZSpringModel:
@@ -106,6 +113,8 @@ class Problem:
         self._model = model
         self.relative_step, self.tolerance = model.relative_step, model.tolerance
         self.is_costly = model.is_costly
+        # By the measurement's own standard errors: residuals are then in these.
+        self.is_weighted = settings.weights == "errors"
 
     def thinned(self, points: int) -> Problem:
         """The same problem on a part: at most so many points of each curve, and steps of at least 2 ms.
@@ -135,13 +144,14 @@ class Problem:
         return self._model.answers([self.settings.parameters(x) for x in xs], like)
 
     def residuals(self, answer: Answer) -> np.ndarray:
-        """Residuals (m,): real and imaginary part of each point, then the static test; finite always.
+        """Residuals (m,): real and imaginary part of each point, harmonics, then the static test; finite always.
 
         Logarithmic: log(H / measured), its real part the relative error of the magnitude, its imaginary part
-        that of the phase in rad. Linear: difference over the root mean square of the measured curve.
+        that of the phase in rad; each over its standard error where they are known. Linear: difference over the root
+        mean square of the measured curve.
         """
         parts = []
-        for curve, H in zip(self.curves, answer.curves):
+        for i, (curve, H) in enumerate(zip(self.curves, answer.curves)):
             with np.errstate(invalid="ignore", divide="ignore"):
                 if self.settings.error == "log":
                     error = np.log(H / curve.H)
@@ -150,16 +160,37 @@ class Problem:
                     wanted = as_quantity(curve.H, quantity)
                     scale = np.sqrt(np.mean(np.abs(wanted) ** 2))
                     error = (as_quantity(H, quantity) - wanted) / scale
-            error = np.where(np.isfinite(error), error, PENALTY * (1 + 1j))
-            parts += [error.real, error.imag]
+            off = _finite(np.column_stack([error.real, error.imag]), PENALTY)
+            if self.is_weighted and curve.error is not None:
+                off /= np.hypot(curve.error, SETTLED.tolerance)  # the model's own scatter
+            parts.append(off.T.ravel())
+            if self.settings.harmonics and answer.harmonics:
+                parts.append(self._harmonics(curve, answer.harmonics[i]))
         if self.static and self.settings.static and answer.static is not None:
             wanted, force = (f - f.mean() for f in (self.static.force, answer.static))
             points = sum(curve.frequency.size for curve in self.curves)
             # As heavy as all points of the curves together, if they are off as much.
             weight = np.sqrt(self.settings.static.weight * points / wanted.size / np.mean(wanted**2))
             error = weight * (force - wanted)
-            parts.append(np.where(np.isfinite(error), error, PENALTY))
+            parts.append(_finite(error, PENALTY))
         return np.concatenate(parts)
+
+    def _harmonics(self, curve: Curve, computed: np.ndarray) -> np.ndarray:
+        """Residuals (k,) of those that count, over the first harmonic, or over standard errors where those count."""
+        assert curve.harmonics is not None  # settled_targets
+        columns = [HARMONICS.index(order) for order in self.settings.harmonics]
+        first = np.abs(curve.displacement / curve.H)[:, None]
+        scale = np.hypot(curve.harmonics.error, SETTLED.tolerance * first) if self.is_weighted else first
+        return _finite(((computed - curve.harmonics.peak) / scale)[:, columns].ravel(), PENALTY)
+
+    def variance(self, cost: float, freedom: int) -> float:
+        """Of a residual, at the solution with this cost; `freedom`: how many residuals more than parameters.
+
+        Where they are in standard errors of the measurement it is 1, or more if the model does not follow it (Birge,
+        The calculation of errors by the method of least squares, Physical Review 40, 1932).
+        """
+        found = 2 * cost / max(freedom, 1)
+        return max(found, 1.0) if self.is_weighted else found
 
     def costs(self, xs: Sequence[np.ndarray]) -> np.ndarray:
         """Half the sum of squared residuals for each x, shape (len(xs),)."""

@@ -34,6 +34,7 @@ from .plot import fit_figure, static_figure
 from .problem import Model, Problem, ThreeMassModel, ZSpringModel
 from .search import Cost, cost_record, search
 from .settings import LINEAR_PARAMETERS, Settings
+from .targets import settled_targets
 
 # Of the bench, the line and the solver, so not of a pantograph.
 OTHER_PARAMETERS = ("drive", "bench.", "static_force", "contact.", "solver.")
@@ -55,6 +56,7 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
     if settings.model == "linear":
         curves = [curve for curve in curves if curve.label == curves[0].label]
     curves = in_band(curves, settings.band)
+    settings = settled_targets(settings, curves)
     count = 2 * sum(curve.frequency.size for curve in curves)
     if count <= len(settings.free):
         raise ZSpringError(f"{count} measured numbers cannot determine {len(settings.free)} parameters")

@@ -11,6 +11,7 @@ from pydantic import Field, Strict, model_validator
 
 from ..bench.conditions import Conditions, read_conditions
 from ..bench.curves import Source
+from ..bench.fmu_bench import HARMONICS
 from ..bench.measure import BENCH_PARAMETERS
 from ..errors import ZSpringError
 from ..fmu import Fmu
@@ -116,6 +117,13 @@ DataSets = Annotated[
 ]
 
 
+Orders = Annotated[
+    tuple[int, ...],
+    Strict(False),
+    fitting(f"must be orders from {HARMONICS[0]} to {HARMONICS[-1]}", lambda orders: set(orders) <= set(HARMONICS)),
+]
+
+
 class Measurement(Table):
     """A file of measured responses and what it does not tell, see Source."""
 
@@ -134,6 +142,8 @@ class Settings(Table):
     band: Band = ALL_FREQUENCIES
     error: Literal["log", "linear"] = "log"
     quantity: Literal["receptance", "stiffness"] = "receptance"
+    weights: Literal["errors", "equal"] | None = Field(None, description="None: errors where all files tell them")
+    harmonics: Orders = ()
     direction: Literal["up", "down", "rest", "file"] | None = Field(None, description="None: as the files have it")
     measurement: list[Measurement] = Field([], min_length=1, validate_default=True)
     static: Static | None = None
@@ -159,6 +169,8 @@ class Settings(Table):
                     raise ValueError(f"free.{name}: the linear model has only {', '.join(LINEAR_PARAMETERS)}")
             if self.static:
                 raise ValueError("static: the linear model has no static test")
+            if self.harmonics:
+                raise ValueError("harmonics: the linear model has none")
         for name, tie in self.tied.items():
             if name in self.free:
                 raise ValueError(f"tied.{name}: is free, too")
