@@ -315,7 +315,7 @@ def test_ctrl_c_in_the_last_jacobian_writes_nothing_and_keeps_the_search(tmp_pat
         settings = read_settings(path, model)
         with monkeypatch.context() as patched:
             patched.setattr(run, "fit", fit_until_ctrl_c)
-            with pytest.raises(Interrupted, match="the same command goes on after the global search"):
+            with pytest.raises(Interrupted, match="the same command goes on after the search"):
                 run.identify(model, settings, path, out, "png", JOBS)
         assert sorted(path.name for path in out.iterdir()) == ["identify.log", "search.partial.csv"]
         run.identify(model, settings, path, out, "png", JOBS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -45,18 +46,21 @@ class Curve:
         """The points with frequencies in the band (Hz)."""
         return self.at((self.frequency >= band[0]) & (self.frequency <= band[1]))
 
-    def refined(self, parts: int) -> Curve:
-        """With so many parts between two points, amplitudes in between (H is not known there: NaN).
+    def refined(self, points: int) -> Curve:
+        """With as many places between two points as it takes to that many, and at least one.
 
-        As it is where the frequencies do not all rise or all fall.
+        Amplitudes are in between, H is not known there: NaN. As it is where the frequencies do not all rise or all
+        fall.
         """
         steps = np.diff(self.frequency)
-        if not (np.all(steps > 0) or np.all(steps < 0)):
+        if not steps.size or not (np.all(steps > 0) or np.all(steps < 0)):
             return self
-        places, known = np.arange((self.frequency.size - 1) * parts + 1) / parts, np.arange(self.frequency.size)
+        parts = max(2, math.ceil(points / steps.size))
+        places, known = np.arange(steps.size * parts + 1) / parts, np.arange(self.frequency.size)
         acceleration = np.exp(np.interp(places, known, np.log(self.acceleration)))
-        unknown = np.full(places.shape, np.nan + 0j)
-        return Curve(self.label, np.interp(places, known, self.frequency), acceleration, unknown)
+        H = np.full(places.shape, np.nan + 0j)
+        H[::parts] = self.H
+        return Curve(self.label, np.interp(places, known, self.frequency), acceleration, H)
 
     def at(self, points: np.ndarray) -> Curve:
         """Only some points, by index or by mask."""

@@ -19,6 +19,7 @@ from .settings import Settings
 
 # Good enough to find the right valley. The step, in s, is not for differences: those with friction are 30 % off.
 COARSE_STEP, COARSE_TOLERANCE = 2e-3, 1e-2
+ROUGH_PERIODS = 6
 # Residual of a point that the model could not compute: 10 in the logarithm, or 10 times the mean square.
 PENALTY = 10.0
 
@@ -193,8 +194,10 @@ class Problem:
         return max(found, 1.0) if self.is_weighted else found
 
     def costs(self, xs: Sequence[np.ndarray]) -> np.ndarray:
-        """Half the sum of squared residuals for each x, shape (len(xs),)."""
-        return np.array([0.5 * np.sum(self.residuals(answer) ** 2) for answer in self.answers(xs)])
+        """Half the sum of squared residuals for each x, shape (len(xs),), in a few periods where they are costly."""
+        rough = Answer([], None, [(ROUGH_PERIODS,) * curve.frequency.size for curve in self.curves])
+        answers = self.answers(xs, rough if self.is_costly else None)
+        return np.array([0.5 * np.sum(self.residuals(answer) ** 2) for answer in answers])
 
     def jacobian(self, x: np.ndarray, answer: Answer, columns: Collection[int]) -> np.ndarray:
         """d residuals / dx (m, len(columns)) at x, whose answer it is, by one-sided differences."""

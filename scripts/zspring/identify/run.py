@@ -38,7 +38,7 @@ from .targets import settled_targets
 
 # Of the bench, the line and the solver, so not of a pantograph.
 OTHER_PARAMETERS = ("drive", "bench.", "static_force", "contact.", "solver.")
-FINE = 3  # parts between two points of a drawn curve
+FINE = 100  # points of a drawn curve
 WORSE = 1.1  # times the cost: another minimum
 
 
@@ -177,7 +177,7 @@ def _fit(problem: Problem, x: np.ndarray, name: str, stop, log: _Log) -> Fit:
 
         def check() -> None:
             if stop.is_set():
-                raise Interrupted("interrupted; the same command goes on after the global search")
+                raise Interrupted("interrupted; the same command goes on after the search")
 
         def progress(cost: float) -> None:
             check()
@@ -192,11 +192,14 @@ def _fit(problem: Problem, x: np.ndarray, name: str, stop, log: _Log) -> Fit:
 
 def _drawn(problem: Problem, model: Model, result: Fit, stop) -> list[Curve]:
     """What the fitted model has at and between the points. Raises Interrupted after Ctrl-C."""
-    fine = [curve.refined(FINE) for curve in problem.curves]
-    (answer,) = model.with_curves(fine).answers([problem.settings.parameters(result.x)])
+    fine = [replace(curve, H=H).refined(FINE) for curve, H in zip(problem.curves, result.answer.curves)]
+    between = [curve.at(np.isnan(curve.H)) for curve in fine]
+    (answer,) = model.with_curves(between).answers([problem.settings.parameters(result.x)])
     if stop.is_set():
-        raise Interrupted("interrupted; the same command goes on after the global search")
-    return [replace(curve, H=H) for curve, H in zip(fine, answer.curves)]
+        raise Interrupted("interrupted; the same command goes on after the search")
+    for curve, H in zip(fine, answer.curves):
+        curve.H[np.isnan(curve.H)] = H
+    return fine
 
 
 def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Value], path: Path) -> Path:
