@@ -110,6 +110,7 @@ class Sweep:
 
 Kept = tuple[FrfPoint, Mapping[str, Any] | None]  # with the bench's state; None: the next point starts from rest
 Task = TypeVar("Task")
+Result = TypeVar("Result")
 
 
 def differences(some: Sequence[FrfPoint], others: Sequence[FrfPoint]) -> dict[tuple[float, float], float]:
@@ -145,13 +146,13 @@ def measure(fmu: Fmu, settings: FrfSettings, todo: list[Sweep], jobs: int, stop:
 
 
 def at_a_time(
-    run: Callable[[Bench, Task, FrfSettings, threading.Event], Iterator[Kept]],
+    run: Callable[[Bench, Task, FrfSettings, threading.Event], Iterator[Result]],
     fmu: Fmu,
     settings: FrfSettings,
     todo: list[Task],
     jobs: int,
     stop: threading.Event,
-) -> Iterator[Kept]:
+) -> Iterator[Result]:
     """The points of all tasks as they get ready.
 
     `jobs` tasks run at a time, each on an instance of its own. Ends early once `stop` is set.
