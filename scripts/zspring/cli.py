@@ -19,6 +19,7 @@ from .info import info
 from .interrupt import Interrupted
 from .linearize.command import linearize
 from .mechanism.command import mechanism
+from .recordings.command import recordings
 from .simulate.command import simulate
 from .slip.command import slip
 from .static.command import static
@@ -52,7 +53,10 @@ def research_command(name: str) -> click.Command:
     return click.Command(name, settings, refuse, [anything], short_help=f"Not installed: {how}.", add_help_option=False)
 
 
-for command in (frf, simulate, identify, info, export, static, slip, mechanism, linearize, study, couple, en50318):
+for command in (
+    *(frf, simulate, recordings, identify, info, export),
+    *(static, slip, mechanism, linearize, study, couple, en50318),
+):
     commands.add_command(command)
 for name in RESEARCH:
     commands.add_command(research_command(name))

@@ -81,9 +81,10 @@ class Table:
             raise ZSpringError(f"{self.path}: column {name!r} needs its unit, as in '{name} [{example}]'")
         return unit
 
-    def numbers(self, name: str, *units: str, positive: bool = False) -> np.ndarray:
+    def numbers(self, name: str, *units: str, positive: bool = False, gaps: bool = False) -> np.ndarray:
         """A column (n,), in the one of these units that its own converts to; as it stands where none is named.
 
+        gaps    an empty cell or NaN is a missing value, NaN
         Raises ZSpringError, with file and line or column, for a missing column or unit, a unit of another kind, and a
         cell that is no finite number, or not positive where it must be.
         """
@@ -94,7 +95,11 @@ class Table:
                 factor = conversion(unit, *units)[1]
             except ZSpringError as error:
                 raise ZSpringError(f"{self.path}, column {column.name!r}: {error}") from None
-        values = [self._number(column.name, line, cell) for line, cell in zip(self.lines, column.cells)]
+        missing = ("", "nan") if gaps else ()
+        values = [
+            math.nan if cell.lower() in missing else self._number(column.name, line, cell)
+            for line, cell in zip(self.lines, column.cells)
+        ]
         for line, value in zip(self.lines, values):
             if positive and value <= 0:
                 raise ZSpringError(f"{self.path}, line {line}: {column.name} = {value:g}: must be positive")

@@ -31,6 +31,8 @@ SYMBOLS = {
     "kg": "kilogram",
     "J": "joule",
     "W": "watt",
+    "V": "volt",
+    "mV": "millivolt",
     "rad": "radian",
     "mrad": "milliradian",
     "deg": "degree",

@@ -106,24 +106,29 @@ class InputBench:
         return (self._peak + (peak - self._peak) * p) * np.sin(phase)
 
     def _drive(self, targets: np.ndarray) -> np.ndarray:
-        """Move the head to n positions (m), one communication step to each.
-
-        Returns the contact force (n,) in N at the end of every step.
-        """
+        """Move the head to n positions (m), one communication step to each: contact force (n,) in N at their ends."""
         frequency, _ = self._target
         step = 1 / (self._steps * frequency)
-
-        # Half the time goes into the calls, so their arguments are made once.
-        fmu, variables = self.instance.slave, self.instance.variables
-        head = (c_uint * 1)(variables["head_displacement"].valueReference)
-        contact = (c_uint * 1)(variables["contact.force"].valueReference)
-        target, force = (c_double * 1)(), (c_double * 1)()
-        forces = []
-        with self.instance.refusals():
-            for i, target[0] in enumerate(targets.tolist()):
-                fmu.fmi2SetReal(fmu.component, head, 1, target)
-                fmu.fmi2DoStep(fmu.component, self._time + i * step, step, 1)
-                fmu.fmi2GetReal(fmu.component, contact, 1, force)
-                forces.append(force[0])
+        forces = move_head(self.instance, self._time, step, targets)
         self._time += len(forces) * step
-        return np.array(forces)
+        return forces
+
+
+def move_head(instance: Instance, time: float, step: float, positions: np.ndarray) -> np.ndarray:
+    """Move the head to n positions (m), one communication step (s) to each, from a time in s on; drive Displacement.
+
+    Returns the contact force (n,) in N at the end of every step.
+    """
+    # Half the time goes into the calls, so their arguments are made once.
+    fmu, variables = instance.slave, instance.variables
+    head = (c_uint * 1)(variables["head_displacement"].valueReference)
+    contact = (c_uint * 1)(variables["contact.force"].valueReference)
+    target, force = (c_double * 1)(), (c_double * 1)()
+    forces = []
+    with instance.refusals():
+        for i, target[0] in enumerate(positions.tolist()):
+            fmu.fmi2SetReal(fmu.component, head, 1, target)
+            fmu.fmi2DoStep(fmu.component, time + i * step, step, 1)
+            fmu.fmi2GetReal(fmu.component, contact, 1, force)
+            forces.append(force[0])
+    return np.array(forces)

@@ -12,7 +12,7 @@ The file is a table as `tables.py` reads it, with the columns, in any order:
     magnitude_error     standard error of the magnitude, in its unit or in %
     phase_error [deg or rad]    that of the phase; both or none
     harmonic_2 [N] ... harmonic_7 [N]   peaks of the contact force's harmonics, as many as were measured, and their
-    harmonic_2_error [N] ...            standard errors, if they are known
+    harmonic_2_error [N] ...            standard errors, if they are known; an empty cell for one that is not
 
 Other columns are not read. The file that `zspring frf` writes has this form (its H_re and H_im are read);
 points that it marks as left out or failed are passed over. What its head says of the bench, `conditions` reads.
@@ -118,7 +118,7 @@ def _harmonics(table: Table) -> Harmonics | None:
         return None
     unknown = np.full(len(table.lines), np.nan)
     peak, error = (
-        np.column_stack([table.numbers(name, "N") if name in table else unknown for name in columns])
+        np.column_stack([table.numbers(name, "N", gaps=True) if name in table else unknown for name in columns])
         for columns in (names, [f"{name} error" for name in names])
     )
     return Harmonics(peak, error)

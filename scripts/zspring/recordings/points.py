@@ -1,0 +1,52 @@
+"""What one hold of a recording tells.
+
+H = -Z/F as in `bench.responses`: head displacement Z, upward, and contact force F, which presses the head down.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .sine import HARMONICS
+
+
+@dataclass(frozen=True)
+class Point:
+    """What one hold tells; NaN where it does not. Harmonics (7,) count from the fundamental."""
+
+    record: str  # name of the file
+    level: str | None
+    begin: float  # s, of the periods that count
+    end: float
+    frequency: float  # Hz
+    found: int  # whole periods in the hold
+    periods: int = 0  # that count
+    H: complex = complex(math.nan, math.nan)  # m/N
+    magnitude_error: float = math.nan  # relative, standard error
+    phase_error: float = math.nan  # rad, standard error
+    acceleration: float = math.nan  # m/s2, peak
+    scatter: float = math.nan  # of the motion's amplitude from period to period, relative
+    force: np.ndarray = field(default_factory=lambda: np.full(HARMONICS, np.nan))  # N, peaks
+    force_error: np.ndarray = field(default_factory=lambda: np.full(HARMONICS, np.nan))
+    motion: np.ndarray = field(default_factory=lambda: np.full(HARMONICS, np.nan))  # m, peaks
+    distortion: float = math.nan  # harmonics 2.. of the velocity over its fundamental
+    force_noise: float = math.nan  # N, rms of what is not periodic
+    motion_noise: float = math.nan  # m or m/s2
+    static_force: float = math.nan  # N, mean of the record
+    drift: float = math.nan  # N, of the mean force over the hold
+    loss: float = math.nan  # J, energy per cycle
+    loss_error: float = math.nan
+    agreement: complex = complex(math.nan, math.nan)  # displacement from acceleration over that measured
+    subharmonic: int = 1  # periods after which the force repeats
+    marks: tuple[str, ...] = ()  # what makes it less than it seems
+    left_out: str = ""  # why it is not used
+
+    @property
+    def status(self) -> str:
+        """As the tables have it."""
+        if self.left_out:
+            return f"left out: {self.left_out}"
+        return f"marked: {', '.join(self.marks)}" if self.marks else "used"

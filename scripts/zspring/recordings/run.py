@@ -1,0 +1,124 @@
+"""From settings of recordings to a folder of results."""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from tqdm import tqdm
+
+from ..errors import ZSpringError, tell
+from ..figures import save
+from ..records import keep_others
+from . import report
+from .cycle import cycle_of
+from .evaluate import evaluate
+from .files import write_holds, write_responses
+from .groups import Group, grouped
+from .plot import harmonics_figure, hold_figure, response_figure
+from .points import Point
+from .settings import Settings
+from .signals import Record, read_record
+from .track import Stretch, Turns, holds_of, matched, turns_of
+
+
+def run_recordings(settings: Settings, path: Path, folder: Path, suffix: str) -> None:
+    """Read, evaluate, write and print.
+
+    path    of the settings
+    suffix  of the figures, "png" or "svg"
+    Raises ZSpringError for what cannot be read, and where no hold can be used.
+    """
+    head = _head(settings, path)
+    keep_others(folder / "holds.csv", head)
+    points: list[Point] = []
+    shown: tuple[Record, Point] | None = None
+    said: list[str] = []
+    for file in tqdm(settings.recording, unit=" files", disable=None):
+        record = read_record(file, settings)
+        found, remarks = holds_in(record, settings)
+        points += found
+        said += [*record.remarks, *remarks]
+        clear = [point for point in found if not point.left_out]
+        loudest = max(clear, key=lambda point: point.force[2] / point.force[0], default=None)
+        if loudest and (shown is None or loudest.force[2] / loudest.force[0] > shown[1].force[2] / shown[1].force[0]):
+            shown = record, loudest
+    groups = grouped(points, settings.sweep.direction)
+    tell([*said, *report.doubts(points)], folder / "holds.csv")
+    paths = [write_holds(folder / "holds.csv", head, points)]
+    if shown is None:
+        raise ZSpringError(f"no hold can be used: see {paths[0]}")
+    for line in (report.count_line(points), *report.level_table(groups), *report.up_against_down(groups)):
+        print(line)
+    for line in report.remarks(groups, settings.static_force):
+        print(line, file=sys.stderr)
+    paths += _write_responses(folder, head, groups)
+    title = f"Measured response, {path.stem}"
+    figures = {
+        "frf": response_figure(groups, title),
+        "harmonics": harmonics_figure(groups, title),
+        "hold": hold_figure(cycle_of(*shown, settings), shown[1]),
+    }
+    for name, figure in figures.items():
+        paths.append(folder / f"{name}.{suffix}")
+        save(figure, paths[-1])
+    print("written:", *paths)
+
+
+def holds_in(record: Record, settings: Settings) -> tuple[list[Point], list[str]]:
+    """The points of a file, and what to say of it. Raises ZSpringError where it has no steady part."""
+    name, motion = next(iter(record.motions.items()))
+    holds: list[Stretch] = []
+    noise = []
+    for first, last in record.parts:
+        values = _filled(motion.values[first:last])
+        driven = values if name == "acceleration" or values.size < 2 else np.gradient(values) * record.rate
+        turns: Turns = turns_of(float(record.time[first]), record.rate, driven, settings.sweep.band)
+        noise.append(float(np.median(turns.noise)) if turns.noise.size else np.inf)
+        holds += holds_of(turns)
+    low, high = settings.sweep.band
+    holds = [hold for hold in holds if low <= hold.frequency <= high]
+    if not holds:
+        text = f"{record.path}: no steady part: no {low:g} to {high:g} Hz held in {name}"
+        why = "is it a slow sweep?" if min(noise) < 0.02 else f"its turns scatter by {100 * min(noise):.0f} %"
+        raise ZSpringError(f"{text}; {why}")
+    said: list[str] = []
+    if settings.sweep.frequencies:
+        holds, said = matched(holds, settings.sweep.frequencies, record.path.name)
+    return [evaluate(record, hold, settings) for hold in holds], said
+
+
+def _filled(values: np.ndarray) -> np.ndarray:
+    """Values (n,) with straight lines over what is missing."""
+    there = np.isfinite(values)
+    return values if there.all() else np.interp(np.arange(values.size), np.flatnonzero(there), values[there])
+
+
+def _write_responses(folder: Path, head: dict[str, str], groups: Sequence[Group]) -> list[Path]:
+    """One file, or one for each direction."""
+    ways = list(dict.fromkeys(group.direction for group in groups))
+    paths = []
+    for way in ways:
+        own = [group for group in groups if group.direction == way]
+        name = f"frf-{way or 'file-order'}.csv" if len(ways) > 1 else "frf.csv"
+        paths.append(write_responses(folder / name, {**head, **({"direction": way} if way else {})}, own))
+    return paths
+
+
+def _head(settings: Settings, path: Path) -> dict[str, str]:
+    """All that defines the numbers."""
+    files = [path, *(file.path for file in settings.recording)]
+    head = {
+        "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
+        "to read it": 'force = "specimen", fixture_mass = 0: signs and fixture are accounted for',
+        "errors": "standard errors, +- 1.96 of which is a 95 % interval",
+        **{
+            f"SHA-256 of {file.name}": hashlib.sha256(file.read_bytes()).hexdigest() for file in files if file.is_file()
+        },
+    }
+    if settings.static_force is not None:
+        head["static_force"] = f"{settings.static_force:g} N"
+    return head

@@ -1,0 +1,152 @@
+"""A recording as the bench meant it: contact force and motions in SI units, signed, over even times."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import ZSpringError
+from ..tables import canonical
+from ..units import conversion
+from .channels import Channel, Recording, even_times
+from .formats import read_recording
+from .settings import MOTIONS, File, Sensor, Settings
+
+TIME_NAMES = ("time", "t", "x value")
+EQUAL_RATE = 1e-6  # relative, as files round it
+FLAT = 3  # times the values alike at an end that a sine has anyway
+
+
+@dataclass(frozen=True)
+class Signal:
+    """Values (n,) in N, m or m/s2; NaN where one is missing."""
+
+    values: np.ndarray
+    delay: float  # s, by which they come late
+    step: float  # smallest difference between two values: what the converter, or the file's digits, tell
+    beyond: np.ndarray  # (n,) whether the channel's limit is reached
+
+    def without_flat(self, part: slice, rate: float, frequency: float) -> tuple[np.ndarray, bool]:
+        """The values of a part with NaN for those that stand still at its ends, and whether most periods have such.
+
+        These are clipped; a few are where a plug was loose. At its crest a sine of amplitude A stays within one step
+        for sqrt(2 step / A) / (pi f).
+        """
+        values, flat = self.values[part], self.beyond[part].copy()
+        if not np.isfinite(values).any():
+            return values, False
+        low, high = np.nanmin(values), np.nanmax(values)
+        if low < high:
+            crest = rate / (np.pi * frequency) * np.sqrt(4 * self.step / (high - low))
+            for end in (low, high):
+                for first, last in _runs(np.abs(values - end) <= self.step / 2):
+                    flat[first:last] |= last - first > FLAT * (1 + crest)
+        clipped = len(_runs(flat)) >= max(3, 0.5 * values.size * frequency / rate)
+        return np.where(flat, np.nan, values), clipped
+
+
+def _runs(which: np.ndarray) -> np.ndarray:
+    """Places [first, last) (m, 2) of the runs of true values in (n,)."""
+    return np.flatnonzero(np.diff(np.concatenate([[0], which.astype(np.int8), [0]]))).reshape(-1, 2)
+
+
+@dataclass(frozen=True)
+class Record:
+    """One file. The first motion is that of H."""
+
+    path: Path
+    level: str | None
+    rate: float  # Hz
+    time: np.ndarray  # (n,) s, even within each part
+    parts: list[tuple[int, int]]  # [first, last) without a gap in time
+    force: Signal  # contact force, which presses the head down
+    motions: dict[str, Signal]  # upward
+    remarks: list[str]
+
+
+def read_record(file: File, settings: Settings) -> Record:
+    """The signals of a file.
+
+    Raises ZSpringError for a channel that is missing or has no values, units that are not clear, and channels that do
+    not have one sampling rate.
+    """
+    recording = read_recording(file.path)
+    sensors: dict[str, Sensor] = {"force": settings.force, **settings.motions}
+    channels = {name: recording[sensor.channel] for name, sensor in sensors.items()}
+    clock = _clock(recording, settings)
+    rates = {name: 1 / c.step for name, c in channels.items() if c.step}
+    _one_rate(file.path, rates)
+    starts = {c.start for c in channels.values() if c.step}
+    if len(starts) > 1 and np.ptp([*starts]) * max(rates.values()) > 0.01:
+        raise ZSpringError(f"{file.path}: channels begin at different times: {', '.join(f'{s:g} s' for s in starts)}")
+    sizes = {name: c.values.size for name, c in {**channels, **({"time": clock} if clock else {})}.items()}
+    size, remarks = min(sizes.values()), []
+    if max(sizes.values()) > 1.01 * size:
+        listed = ", ".join(f"{name} {count}" for name, count in sizes.items())
+        raise ZSpringError(f"{file.path}: numbers of values differ ({listed}): the sampling rates must be equal")
+    if max(sizes.values()) > size:
+        remarks.append(f"{file.path.name}: channels end at different times: cut to {size} values")
+    if clock is not None:
+        step, parts = even_times(file.path, _seconds(file.path, clock, settings)[:size])
+        begin = _seconds(file.path, clock, settings)
+        time = np.concatenate([begin[a] + step * np.arange(b - a) for a, b in parts])
+        keep = np.concatenate([np.arange(a, b) for a, b in parts])
+        lengths = np.cumsum([0, *(b - a for a, b in parts)])
+        parts = [*itertools.pairwise(map(int, lengths))]
+        if len(parts) > 1:
+            remarks.append(f"{file.path.name}: {len(parts) - 1} gaps in time")
+    else:
+        told = settings.time.rate or next(iter(rates.values()), None)
+        if told is None:
+            raise ZSpringError(f"{file.path}: no time: [time] channel or rate, in Hz, tells it")
+        if settings.time.rate:
+            _one_rate(file.path, {**rates, "[time] rate": told})
+        step, time, keep = 1 / told, next(iter(starts), 0.0) + np.arange(size) / told, np.arange(size)
+        parts = [(0, size)]
+
+    def signal(name: str, wanted: str, sign: int) -> Signal:
+        where = f"{file.path}, [{name}]"
+        factor = sign * sensors[name].factor(channels[name].unit, wanted, where)
+        return _signal(where, sensors[name], channels[name].values[:size][keep], factor)
+
+    force = signal("force", "N", settings.contact_sign)
+    motions = {name: signal(name, MOTIONS[name], motion.sign) for name, motion in settings.motions.items()}
+    return Record(file.path, file.level, 1 / step, time, parts, force, motions, remarks)
+
+
+def _clock(recording: Recording, settings: Settings) -> Channel | None:
+    """The channel of time: the one named, else one with a usual name where nothing else tells the time."""
+    if settings.time.channel is not None:
+        return recording[settings.time.channel]
+    if settings.time.rate or recording[settings.force.channel].step:
+        return None
+    return next((channel for name, channel in recording.channels.items() if canonical(name) in TIME_NAMES), None)
+
+
+def _seconds(path: Path, clock: Channel, settings: Settings) -> np.ndarray:
+    unit = settings.time.unit or clock.unit
+    if unit is None:
+        raise ZSpringError(f'{path}, [time]: the file does not tell the unit of the time: unit = "s", say')
+    return clock.values * conversion(unit, "s")[1]
+
+
+def _one_rate(path: Path, rates: dict[str, float]) -> None:
+    if rates and max(rates.values()) > (1 + EQUAL_RATE) * min(rates.values()):
+        listed = ", ".join(f"{name} {rate:g} Hz" for name, rate in rates.items())
+        raise ZSpringError(f"{path}: sampling rates differ ({listed}): must be one")
+
+
+def _signal(where: str, sensor: Sensor, values: np.ndarray, factor: float) -> Signal:
+    there = values[np.isfinite(values)]
+    if not there.size:
+        raise ZSpringError(f"{where}: {sensor.channel!r} has no value")
+    distinct = np.unique(there)
+    if distinct.size < 2:
+        raise ZSpringError(f"{where}: {sensor.channel!r} is {distinct[0]:g} all the time: is the sensor connected?")
+    steps = np.diff(distinct)
+    step = float(steps[steps > 1e-9 * (distinct[-1] - distinct[0])].min())
+    beyond = np.abs(values) >= (np.inf if sensor.limit is None else sensor.limit * (1 - 1e-6))
+    return Signal(factor * values, sensor.delay, abs(factor) * step, beyond)

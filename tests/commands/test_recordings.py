@@ -1,0 +1,173 @@
+"""`zspring recordings` finds the response of a linear pantograph in its time records; the truth is a closed form."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from commands import head, table
+from paths import ROOT
+from shaker import BASE, FOUR, LINEAR, STATIC_FORCE, Shaken, assert_linear, found, shaken, write_text, written
+from zspring.bench.fmu_bench import FmuBench
+from zspring.fmu import Fmu
+from zspring.recordings.evaluate import evaluate
+from zspring.recordings.example import recorded
+from zspring.recordings.run import holds_in
+from zspring.recordings.settings import Settings, read_settings
+from zspring.recordings.signals import Record, Signal, read_record
+from zspring.recordings.sine import error_of_mean
+from zspring.recordings.track import Stretch
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+def test_units_signs_delay_and_fixture_are_accounted_for(tmp_path):
+    """A load cell in volts that pulls, comes late and carries the fixture; a displacement in mm, downward."""
+    record = shaken(FOUR, late=0.0013, fixture_mass=0.8)
+    settings = BASE.replace('"up"', '"down"').replace('sense = "contact"', 'sense = "specimen"\nsensitivity = "4 mV/N"')
+    settings = "fixture_mass = 0.8\n" + settings.replace("[time]", "[time]\nunit = 'ms'")
+    settings = settings.replace('channel = "force"', 'channel = "force"\ndelay = 0.0013')
+    columns = {
+        "time__ms": 1e3 * record.time,
+        "force__V": 4e-3 * record.force,
+        "position__mm": -1e3 * record.displacement,
+    }
+    curves, out, err = found(written(tmp_path, settings, **columns))
+    assert_linear(curves, FOUR)
+    (curve,) = curves
+    np.testing.assert_allclose(curve.acceleration, 1.0, rtol=1e-6)
+    assert not err and "4 holds: 4 used" in out and "up" in out
+    assert "# static_force: 90 N" in head(tmp_path / "out" / "frf.csv")
+    assert "# direction: up" in head(tmp_path / "out" / "frf.csv")
+
+
+def test_acceleration_tells_as_much_as_displacement(tmp_path):
+    """By way of frequencies that fall, which is a sweep down; in g, from a sensor that hangs upside down."""
+    record = shaken(FOUR[::-1])
+    settings = BASE.replace("[displacement]", "[acceleration]").replace('"up"', '"down"')
+    g = 9.80665
+    columns = {"time__s": record.time, "force__N": record.force, "position__g": -record.acceleration / g}
+    curves, _, _ = found(written(tmp_path, settings, **columns))
+    assert_linear(curves, FOUR[::-1])
+    assert "# direction: down" in head(tmp_path / "out" / "frf.csv")
+
+
+def test_harmonics_distortion_and_loss_are_those_of_the_record(tmp_path):
+    """A third harmonic of 1 % of the displacement: 3 % of the velocity, marked; the force has its own share of it."""
+    record = shaken(FOUR, harmonics={3: 0.01})
+    settings = written(tmp_path, BASE, time__s=record.time, force__N=record.force, position__m=record.displacement)
+    curves, _, err = found(settings)
+    assert_linear(curves, FOUR)
+    assert err.count("marked: distortion of the motion 3 %") == len(FOUR)
+    for f, row, hold in zip(FOUR, table(tmp_path / "out" / "frf.csv"), table(tmp_path / "out" / "holds.csv")):
+        peak = 1.0 / (2 * np.pi * f) ** 2
+        assert float(hold["motion_3 [m]"]) == pytest.approx(0.01 * peak, rel=1e-5)
+        assert float(row["harmonic_3 [N]"]) == pytest.approx(
+            0.01 * peak * abs(LINEAR.dynamic_stiffness(3 * f)), rel=1e-5
+        )
+        assert float(row["harmonic_2 [N]"]) < 1e-8
+        loss = sum(
+            np.pi * k * (size * peak) ** 2 * (LINEAR.dynamic_stiffness(k * f)).imag / k
+            for k, size in ((1, 1), (3, 0.01))
+        )
+        assert float(hold["force_mean [N]"]) == pytest.approx(STATIC_FORCE, rel=1e-5)
+        assert float(row["loss [J]"]) == pytest.approx(loss, rel=1e-3)
+
+
+def test_harmonics_beyond_the_sampling_rate_are_not_told(tmp_path):
+    """At 40 Hz a drive of 5.2 Hz has three harmonics; the others are empty cells, which `identify` reads."""
+    record = shaken(FOUR[1:3], rate=40.0, periods=30)
+    settings = written(tmp_path, BASE, time__s=record.time, force__N=record.force, position__m=record.displacement)
+    curves, _, _ = found(settings)
+    assert_linear(curves, FOUR[1:3])
+    rows = table(tmp_path / "out" / "frf.csv")
+    assert [rows[1][f"harmonic_{k} [N]"] != "" for k in range(2, 8)] == [True, True, False, False, False, False]
+    assert rows[0]["harmonic_5 [N]"] != ""
+
+
+def as_record(shaker: Shaken, displacement: np.ndarray, force: np.ndarray, steps=(0.0, 0.0)) -> Record:
+    def signal(values: np.ndarray, step: float) -> Signal:
+        values = step * np.round(values / step) if step else values
+        return Signal(values, 0.0, step, np.zeros(values.size, bool))
+
+    motions = {"displacement": signal(displacement, steps[0])}
+    parts = [(0, displacement.size)]
+    return Record(Path("a.csv"), None, shaker.rate, shaker.time, parts, signal(force, steps[1]), motions, [])
+
+
+def test_the_stated_errors_are_those_that_there_are(tmp_path):
+    """95 % intervals cover 93 to 97 % of 200 points: noise that hangs together, few and many periods, 16-bit steps."""
+    settings = read_settings(written(tmp_path, BASE))
+    random = np.random.default_rng(5)
+    covered, errors = [], []
+    for number, f in enumerate(np.linspace(1.2, 13, 200)):
+        record = shaken([f], rate=250.0, periods=(9, 14, 30)[number % 3] + 0.4)
+        noise = random.standard_normal((2, record.time.size + 50))
+        for _ in range(number % 2):  # every second one is red
+            noise[:, 1:] += 0.7 * noise[:, :-1]
+        noise = noise[:, 50:]
+        peak = 1.0 / (2 * np.pi * f) ** 2
+        stained = as_record(
+            record, record.displacement + 0.05 * peak * noise[0], record.force + 0.2 * noise[1], (peak / 400, 0.02)
+        )
+        point = evaluate(stained, Stretch(0.0, record.time[-1], f * 1.0005, peak), settings)
+        error = point.H / LINEAR.receptance(f) - 1
+        errors.append((point.magnitude_error, point.phase_error))
+        covered += [abs(error.real) < 1.96 * point.magnitude_error, abs(error.imag) < 1.96 * point.phase_error]
+    assert 0.93 <= np.mean(covered) <= 0.97
+    assert np.median(errors) < 0.02
+
+
+def test_the_error_of_a_mean_knows_that_few_values_tell_little():
+    """For white noise +- 1.96 cover 95 % whatever the number of values; a slow wave in them makes it larger."""
+    random = np.random.default_rng(1)
+    for count in (5, 8, 20, 100):
+        values = random.standard_normal((1500, count))
+        covered = np.mean([abs(row.mean()) < 1.96 * error_of_mean(row) for row in values])
+        assert covered == pytest.approx(0.95, abs=0.02)
+    assert np.isnan(error_of_mean(np.ones(4)))
+    slow = np.sin(np.linspace(0, 3, 100))
+    assert error_of_mean(slow) > 2 * slow.std() / 10
+
+
+def test_steps_that_are_alike_in_every_period_are_no_certainty(tmp_path):
+    """Without noise and with a whole number of values in a period the scatter is 0; the converter's steps are not."""
+    settings = read_settings(written(tmp_path, BASE))
+    pulls = []
+    for f in (2.0, 4.0, 5.0, 6.25, 8.0, 10.0, 12.5):
+        record = shaken([f], rate=500.0, periods=20)
+        peak = 1.0 / (2 * np.pi * f) ** 2
+        stained = as_record(record, record.displacement, record.force, (peak / 20, 0.3))
+        point = evaluate(stained, Stretch(0.0, record.time[-1], f, peak), settings)
+        error = point.H / LINEAR.receptance(f) - 1
+        pulls += [error.real / point.magnitude_error, error.imag / point.phase_error]
+    assert 0.3 < np.sqrt(np.mean(np.square(pulls))) < 1.5
+
+
+def test_the_virtual_bench_gives_what_the_bench_in_the_fmu_has(tmp_path):
+    """All its faults together; the truth is the FMU's own, which knows neither samples nor fits."""
+    example = tomllib.loads((ROOT / "resources/examples/recordings.toml").read_text("utf-8"))
+    frequencies = np.array([3.0, 4.5, 5.5, 6.5, 8.0, 11.0])
+    with Fmu() as fmu, fmu.instances() as (instance,):
+        columns = recorded(instance, 1.0, frequencies, np.random.default_rng(2), dropout=2)
+        write_text(tmp_path / "level-1.csv", columns, digits=7)
+        settings = Settings.model_validate({**example, "recording": [{"file": "level-1.csv"}]}, context=tmp_path)
+        record = read_record(settings.recording[0], settings)
+        points, said = holds_in(record, settings)
+        bench, pulls = FmuBench(instance, {"solver.step": 0.0005}), []
+        for point in points:
+            bench.start(point.frequency, point.acceleration)
+            bench.run(100)
+            error = point.H / bench.H - 1
+            pulls += [error.real / point.magnitude_error, error.imag / point.phase_error]
+    np.testing.assert_allclose([point.frequency for point in points], frequencies, rtol=1e-3)
+    assert not said and not any(point.left_out for point in points)
+    assert [point.found - point.periods for point in points] == pytest.approx([2, 2, 4, 2, 2, 2], abs=1)
+    assert max(map(abs, pulls)) < 3.5 and np.sqrt(np.mean(np.square(pulls))) > 0.4
+    assert all(abs(point.agreement - 1) < 0.01 for point in points)
