@@ -72,6 +72,7 @@ def fit_of(problem: Problem, **fields) -> Fit:
             standard_error=np.full(n, 0.01),
             unbound_error=np.full(n, 0.01),
             correlation=np.eye(n),
+            jacobian=np.zeros((6, n)),
         ),
         **fields,
     )

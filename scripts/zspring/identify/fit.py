@@ -33,6 +33,7 @@ class Fit:
     standard_error: np.ndarray  # in the FMU's units; NaN at a bound, inf where the data say nothing
     unbound_error: np.ndarray  # what it would be if none were held
     correlation: np.ndarray  # (n, n), NaN where there is no standard error
+    jacobian: np.ndarray  # (m, n), of the residuals with respect to x
 
 
 def fit(problem: Problem, x: np.ndarray, progress: Callable[[float], None]) -> Fit:
@@ -64,6 +65,7 @@ def fit(problem: Problem, x: np.ndarray, progress: Callable[[float], None]) -> F
         standard_error=error,
         unbound_error=unbound_error,
         correlation=correlation,
+        jacobian=jacobian,
     )
 
 
@@ -73,9 +75,9 @@ def statistics(
     """Standard errors (n,) and correlations (n, n) from the Jacobian (m, n) with respect to x.
 
     cov = s^2 (J^T J)^-1 with s^2 = 2 cost / (m - n), for residuals that are independent and of one size
-    (Bates and Watts, Nonlinear Regression Analysis, 1988, section 2.2); where they are in standard errors of the
-    measurement, s^2 is at least 1. A direction in which the residuals do not change makes the standard errors of its
-    parameters infinite.
+    (Bates and Watts, Nonlinear Regression Analysis, 1988, section 2.2); see Problem.variance for those in
+    standard errors of the measurement. A direction in which the residuals do not change makes the standard errors of
+    its parameters infinite.
     """
     n = x.size
     error, correlation = np.full(n, np.nan), np.full((n, n), np.nan)
@@ -102,7 +104,7 @@ def statistics(
 
 
 @dataclass
-class _Solution:
+class Solution:
     """Of least squares: x (n,), the answer there, and the Jacobian (m, n) there or a standard error away."""
 
     x: np.ndarray
@@ -114,7 +116,7 @@ class _Solution:
     evaluations: int = 1
 
 
-def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable[[float], None]) -> _Solution:
+def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable[[float], None]) -> Solution:
     """Least squares for the parameters that are not held, from x.
 
     The optimiser sees answers in as many periods as the one where it began took. At its end as many as are needed
@@ -129,9 +131,9 @@ def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable
         return answer, cost
 
     answer, cost = at(x)
-    found = _Solution(x, answer, cost, problem.jacobian(x, answer, range(x.size)))
+    found = Solution(x, answer, cost, problem.jacobian(x, answer, range(x.size)))
     while True:
-        x, message, is_converged, count = _descend(problem, found, held, progress)
+        x, message, is_converged, count = descend(problem, found, held, progress)
         found = replace(found, message=message, is_converged=is_converged, evaluations=found.evaluations + count)
         answer, cost = at(x)
         if cost >= found.cost:
@@ -145,15 +147,15 @@ def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable
             return found
 
 
-def _way(problem: Problem, found: _Solution, x: np.ndarray) -> float:
+def _way(problem: Problem, found: Solution, x: np.ndarray) -> float:
     """From there to x (n,), in standard errors."""
     residuals = problem.residuals(found.answer)
     variance = max(problem.variance(found.cost, residuals.size - x.size), NOISE_FREE)
     return float(np.linalg.norm(found.jacobian @ (x - found.x)) / np.sqrt(variance))
 
 
-def _descend(
-    problem: Problem, start: _Solution, held: np.ndarray, progress: Callable[[float], None]
+def descend(
+    problem: Problem, start: Solution, held: np.ndarray, progress: Callable[[float], None]
 ) -> tuple[np.ndarray, str, bool, int]:
     """scipy's least squares: its x, message, whether it converged, and its evaluations.
 

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from ..bench.curves import Curve
 from ..bench.responses import phase_degrees
 from ..bench.static_test import StaticTest
 from ..figures import new_figure
+from .fit import Fit
+from .posterior import Posterior
+from .problem import Problem
 from .report import magnitude_error, phase_error
 
 
@@ -61,4 +65,44 @@ def static_figure(test: StaticTest, force: np.ndarray, title: str) -> Figure:
     axes.set(title=title, xlabel="displacement of the head  [mm]", ylabel="force on the head, mean removed  [N]")
     axes.grid(True, linewidth=0.4, alpha=0.5)
     axes.legend()
+    return figure
+
+
+def posterior_figure(problem: Problem, fit: Fit, posterior: Posterior, units: Mapping[str, str], title: str) -> Figure:
+    """Draws of each parameter, and of each pair, with the fit; a corner figure."""
+    frees = problem.settings.free
+    values = {
+        name: np.array([free.value(at) for at in posterior.x[:, i].tolist()])
+        for i, (name, free) in enumerate(frees.items())
+    }
+    count = len(frees)
+    figure = new_figure(2.2 * count + 1.5, 2.2 * count + 0.6)
+    figure.suptitle(f"{title}, {len(posterior.x)} equally probable draws", fontsize=10)
+    grid = figure.subplots(count, count, squeeze=False)
+    for i, (row, y) in enumerate(values.items()):
+        for j, (column, x) in enumerate(values.items()):
+            axes = grid[i, j]
+            if j > i:
+                axes.set_axis_off()
+                continue
+            axes.axvline(fit.values[j], color="tab:orange", linewidth=1)
+            if i == j:
+                axes.hist(x, bins="auto", color="tab:blue", alpha=0.6)
+                axes.set_yticks([])
+            else:
+                axes.axhline(fit.values[i], color="tab:orange", linewidth=1)
+                axes.plot(x, y, ".", markersize=2, color="tab:blue")
+            axes.tick_params(labelsize=7)
+            axes.tick_params(axis="x", rotation=30)
+            axes.xaxis.set_major_locator(MaxNLocator(4))
+            if i != j:
+                axes.yaxis.set_major_locator(MaxNLocator(4))
+            if i == count - 1:
+                axes.set_xlabel(f"{column}  [{units[column]}]", fontsize=8)
+            if j == 0 and i > 0:
+                axes.set_ylabel(f"{row}  [{units[row]}]", fontsize=8)
+            if i < count - 1:
+                axes.set_xticklabels([])
+            if j > 0:
+                axes.set_yticklabels([])
     return figure

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from scipy.stats import chi2
 
 from ..bench.curves import Curve
 from ..bench.fmu_bench import HARMONICS
@@ -20,6 +21,7 @@ from .settings import Settings
 # Good enough to find the right valley. The step, in s, is not for differences: those with friction are 30 % off.
 COARSE_STEP, COARSE_TOLERANCE = 2e-3, 1e-2
 ROUGH_PERIODS = 6
+BY_CHANCE = 0.95  # of sums of squares
 # Residual of a point that the model could not compute: 10 in the logarithm, or 10 times the mean square.
 PENALTY = 10.0
 
@@ -187,17 +189,22 @@ class Problem:
     def variance(self, cost: float, freedom: int) -> float:
         """Of a residual, at the solution with this cost; `freedom`: how many residuals more than parameters.
 
-        Where they are in standard errors of the measurement it is 1, or more if the model does not follow it (Birge,
+        Where they are in standard errors of the measurement it is 1, unless they are larger than by chance (Birge,
         The calculation of errors by the method of least squares, Physical Review 40, 1932).
         """
-        found = 2 * cost / max(freedom, 1)
-        return max(found, 1.0) if self.is_weighted else found
+        freedom = max(freedom, 1)
+        is_chance = self.is_weighted and 2 * cost <= chi2.ppf(BY_CHANCE, freedom)
+        return 1.0 if is_chance else 2 * cost / freedom
 
-    def costs(self, xs: Sequence[np.ndarray]) -> np.ndarray:
-        """Half the sum of squared residuals for each x, shape (len(xs),), in a few periods where they are costly."""
-        rough = Answer([], None, [(ROUGH_PERIODS,) * curve.frequency.size for curve in self.curves])
-        answers = self.answers(xs, rough if self.is_costly else None)
-        return np.array([0.5 * np.sum(self.residuals(answer) ** 2) for answer in answers])
+    @property
+    def rough(self) -> Answer | None:
+        """What costly answers may be like to tell good candidates from bad ones."""
+        periods = [(ROUGH_PERIODS,) * curve.frequency.size for curve in self.curves]
+        return Answer([], None, periods) if self.is_costly else None
+
+    def costs(self, xs: Sequence[np.ndarray], like: Answer | None = None) -> np.ndarray:
+        """Half the sum of squared residuals for each x, shape (len(xs),); `like` as in Model.answers."""
+        return np.array([0.5 * np.sum(self.residuals(answer) ** 2) for answer in self.answers(xs, like)])
 
     def jacobian(self, x: np.ndarray, answer: Answer, columns: Collection[int]) -> np.ndarray:
         """d residuals / dx (m, len(columns)) at x, whose answer it is, by one-sided differences."""

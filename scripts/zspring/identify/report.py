@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..bench.curves import Curve
 from ..fmu import Fmu
 from ..text_tables import aligned
 from .fit import Fit
+from .posterior import Posterior
 from .problem import Problem
 
 STRONG_CORRELATION = 0.98
+SHARE = 0.95  # of intervals
+FEW = 50  # effective draws: too few for intervals to rely on
 
 
 def parameter_table(fmu: Fmu, problem: Problem, fit: Fit) -> list[str]:
@@ -55,10 +60,50 @@ def doubts(problem: Problem, fit: Fit) -> list[str]:
                 lines.append(
                     f"{names[j]} and {names[i]} can hardly be told apart: correlation {fit.correlation[i, j]:.3f}"
                 )
+    if problem.is_weighted:
+        ratio = np.sqrt(problem.variance(fit.cost, problem.residuals(fit.answer).size - len(names)))
+        if ratio > 1:
+            lines.append(
+                f"the model misses the measurement by {ratio:.3g} times its standard errors, more than by chance: "
+                "those of the parameters are widened as much, and are no measure of what the model leaves out"
+            )
     failed = sum(int(np.sum(~np.isfinite(H))) for H in fit.answer.curves)
     if failed:
         lines.append(f"{failed} points could not be computed at the solution and count as a penalty")
     return lines
+
+
+def posterior_doubts(posterior: Posterior | None) -> list[str]:
+    """What to say of draws that tell little."""
+    if not posterior or posterior.effective >= FEW:
+        return []
+    return [
+        f"posterior: {posterior.drawn} draws are worth {posterior.effective:.2g} only: its intervals are rough; give "
+        "more draws"
+    ]
+
+
+def interval_table(
+    fmu: Fmu, problem: Problem, fit: Fit, profiles: Sequence[tuple[float, float]] | None, posterior: Posterior | None
+) -> list[str]:
+    """Intervals of 95 % by profile likelihood and from the posterior, where they were computed."""
+    if not profiles and not posterior:
+        return []
+    kinds: dict[str, Sequence[tuple[float, float]]] = {}
+    if profiles:
+        kinds["profile"] = profiles
+    if posterior:
+        low, high = posterior.interval(SHARE)
+        kinds[f"posterior ({posterior.effective:.3g} of {posterior.drawn} draws)"] = list(zip(low, high))
+    rows = [[f"{100 * SHARE:g} % intervals", *kinds, "unit"]]
+    for i, (name, free) in enumerate(problem.settings.free.items()):
+        cells = []
+        for ends in kinds.values():
+            a, b = (free.value(float(end)) for end in ends[i])
+            digits = (b - a) / 4 if b > a else fit.standard_error[i]  # of about a standard error
+            cells.append(f"{_with_error(a, digits)} .. {_with_error(b, digits)}")
+        rows.append([name, *cells, fmu.variables[name].unit or ""])
+    return ["", *aligned(rows)]
 
 
 def correlation_table(problem: Problem, fit: Fit) -> list[str]:

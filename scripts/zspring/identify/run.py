@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -15,29 +15,29 @@ from tqdm import tqdm
 
 from ..bench.conditions import FILE_ORDER
 from ..bench.curves import Curve, in_band, sign_warning
-from ..bench.measure import FrfSettings
 from ..bench.measured import read_curves
 from ..bench.model import BenchModel
 from ..bench.static_test import read_static_test
 from ..errors import ZSpringError
 from ..figures import save
 from ..fmu import Fmu
-from ..heads import file_head
 from ..interrupt import Interrupted, stop_on_interrupt
-from ..parameter_sets import write_set
-from ..records import Record, keep_others
-from ..tables import read_rows, write_table
-from ..variables import Value, parse, with_unit
+from ..records import keep_others
+from ..tables import read_rows
+from ..variables import parse, with_unit
 from . import report
+from .costs import Costs, cost_record
+from .files import fit_head, write_fitted, write_points, write_posterior
 from .fit import Fit, fit
-from .plot import fit_figure, static_figure
-from .problem import Model, Problem, ThreeMassModel, ZSpringModel
-from .search import Cost, cost_record, search
-from .settings import LINEAR_PARAMETERS, Settings
+from .plot import fit_figure, posterior_figure, static_figure
+from .posterior import Posterior, sample
+from .problem import Answer, Model, Problem, ThreeMassModel, ZSpringModel
+from .profile import profile_interval
+from .search import search
+from .settings import Settings
 from .targets import settled_targets
 
-# Of the bench, the line and the solver, so not of a pantograph.
-OTHER_PARAMETERS = ("drive", "bench.", "static_force", "contact.", "solver.")
+PARTIAL = SEARCH, POSTERIOR = "search.partial.csv", "posterior.partial.csv"
 FINE = 100  # points of a drawn curve
 WORSE = 1.1  # times the cost: another minimum
 
@@ -68,7 +68,7 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
             print(warning, file=sys.stderr)
     defaults = {v.name: parse(v, v.start) for v in fmu.variables if v.causality == "parameter"}
 
-    _keep_others(folder / "fit.csv", _head(fmu, settings))
+    _keep_others(folder / "fit.csv", fit_head(fmu, settings))
     folder.mkdir(parents=True, exist_ok=True)
     with stop_on_interrupt() as stop, _Log(folder / "identify.log") as log, fmu.instances(jobs) as instances:
         bench = BenchModel(instances, settings.direction or FILE_ORDER, stop)
@@ -83,16 +83,20 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
             begin = time.perf_counter()
             x = problem.start
             if settings.search.samples:
-                x, record = _search(fmu, problem, folder, stop, log)
+                x = _search(fmu, problem, folder, stop, log)
             result = _fit(problem, x, "least squares", stop, log)
             drawn = _drawn(problem, model, result, stop)
-            if settings.search.samples:
-                record.path.unlink()
+            profiles = _profiles(problem, result, stop, log) if settings.uncertainty.profiles else None
+            posterior = _posterior(fmu, problem, result, folder, stop, log) if settings.uncertainty.draws else None
+            for name in PARTIAL:
+                (folder / name).unlink(missing_ok=True)
         finally:
             bench.close()
         summary = [
             *report.parameter_table(fmu, problem, result),
             *report.doubts(problem, result),
+            *report.posterior_doubts(posterior),
+            *report.interval_table(fmu, problem, result, profiles, posterior),
             "",
             *report.correlation_table(problem, result),
             "",
@@ -102,8 +106,8 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
         for line in summary:
             log.say(line)
     paths = [
-        _write_set(fmu, problem, result, defaults, folder / "fitted.ssv"),
-        _write_points(fmu, problem, result, folder / "fit.csv"),
+        write_fitted(fmu, problem, result, defaults, folder / "fitted.ssv"),
+        write_points(fmu, problem, result, folder / "fit.csv"),
     ]
     if settings.model == "zspring":
         force = with_unit(fmu.variables["static_force"], settings.parameters(result.x)["static_force"])
@@ -115,20 +119,14 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
     figures = {"fit": fit_figure(curves, result.answer.curves, drawn, f"{title}: {settings.model} model")}
     if static and result.answer.static is not None:
         figures["static"] = static_figure(static, result.answer.static, f"{title}: static test")
+    if posterior:
+        units = {name: fmu.variables[name].unit or "1" for name in settings.free}
+        paths.append(write_posterior(fmu, problem, posterior, folder / "draws.csv"))
+        figures["posterior"] = posterior_figure(problem, result, posterior, units, f"{title}: posterior")
     for name, figure in figures.items():
         paths.append(folder / f"{name}.{suffix}")
         save(figure, paths[-1])
     print("written:", *paths, folder / "identify.log")
-
-
-def _head(fmu: Fmu, settings: Settings) -> dict[str, str]:
-    """All that defines a fit."""
-    files = [*(source.path for source in settings.sources), *([settings.static.path] if settings.static else [])]
-    return {
-        "SHA-256 of the FMU": fmu.sha256,
-        **{f"setting {key}": repr(value) for key, value in settings},
-        **{f"file {i}": f"{hashlib.sha256(path.read_bytes()).hexdigest()} {path}" for i, path in enumerate(files, 1)},
-    }
 
 
 def _keep_others(path: Path, head: Mapping[str, str]) -> None:
@@ -138,24 +136,16 @@ def _keep_others(path: Path, head: Mapping[str, str]) -> None:
         keep_others(path, head, {key: found[key] for key in head if key in found})
 
 
-def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[np.ndarray, Record[Cost]]:
-    """Where to begin the fit, and the record of the search, which may be removed after it.
+def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> np.ndarray:
+    """Where to begin the fit.
 
     On a part of the points: the search, then least squares from the start values and from its best.
     """
     settings = problem.settings
     coarse = problem.thinned(settings.search.points)
-    record = cost_record(folder / "search.partial.csv", _head(fmu, settings), list(settings.free))
-    if record.results:
-        print(f"going on after {len(record.results)} candidates in {record.path}")
     count = settings.search.candidates(problem.start.size)
-    with record, tqdm(total=count, desc="search", unit=" candidates", disable=None) as bar:
-
-        def progress(cost: float) -> None:
-            bar.set_postfix_str(f"cost {cost:.4g}", refresh=False)
-            bar.update()
-
-        found = search(coarse, settings.search, record, stop, progress)
+    with _costs(fmu, coarse, coarse.rough, folder / SEARCH, count, "search", stop) as costs:
+        found = search(problem.start, settings.search, costs)
     names = ["the start values", *(f"start {i} of the search" for i in range(1, len(found) + 1))]
     fits = {
         name: _fit(coarse, x, f"least squares on a part, from {name}", stop, log)
@@ -168,25 +158,68 @@ def _search(fmu: Fmu, problem: Problem, folder: Path, stop, log: _Log) -> tuple[
                 f"from {name} least squares end in a worse minimum (cost {other.cost:.4g}) than from {best} "
                 f"({fits[best].cost:.4g})"
             )
-    return fits[best].x, record
+    return fits[best].x
+
+
+@contextmanager
+def _costs(fmu: Fmu, problem: Problem, like: Answer | None, path: Path, total: int, name: str, stop) -> Iterator[Costs]:
+    """Costs of so many candidates, kept in a file, with a progress bar."""
+    record = cost_record(path, fit_head(fmu, problem.settings), list(problem.settings.free))
+    if record.results:
+        print(f"going on after {len(record.results)} candidates in {path}")
+    with record, tqdm(total=total, desc=name, unit=" candidates", disable=None) as bar:
+
+        def progress(cost: float) -> None:
+            bar.set_postfix_str(f"cost {cost:.4g}", refresh=False)
+            bar.update()
+
+        yield Costs(problem, like, record, stop, progress)
+
+
+def _posterior(fmu: Fmu, problem: Problem, result: Fit, folder: Path, stop, log: _Log) -> Posterior:
+    """Draws from the posterior."""
+    settings = problem.settings.uncertainty
+    path = folder / POSTERIOR
+    with _costs(fmu, problem, result.answer, path, settings.draws, "posterior", stop) as costs:
+        posterior = sample(problem, result, settings.draws, settings.seed, costs)
+    log.write(f"posterior: effective sample size {posterior.effective:.3g} of {posterior.drawn} draws")
+    return posterior
+
+
+def _profiles(problem: Problem, result: Fit, stop, log: _Log) -> list[tuple[float, float]]:
+    """Intervals in x of all parameters by profile likelihood, with a progress bar."""
+    intervals = []
+    with tqdm(desc="profiles", unit=" evaluations", disable=None) as bar:
+
+        def progress(cost: float) -> None:
+            _check(stop)
+            bar.update()
+
+        for i, name in enumerate(problem.settings.free):
+            intervals.append(profile_interval(problem, result, i, report.SHARE, progress))
+            _check(stop)
+            log.write(f"profile of {name}: {intervals[-1]} between its bounds")
+    return intervals
+
+
+def _check(stop) -> None:
+    """Raises Interrupted after Ctrl-C: answers are NaN from then on."""
+    if stop.is_set():
+        raise Interrupted("interrupted; the same command goes on after the search")
 
 
 def _fit(problem: Problem, x: np.ndarray, name: str, stop, log: _Log) -> Fit:
     """Least squares from x (n,), with a progress bar."""
     with tqdm(desc=name, unit=" evaluations", disable=None) as bar:
 
-        def check() -> None:
-            if stop.is_set():
-                raise Interrupted("interrupted; the same command goes on after the search")
-
         def progress(cost: float) -> None:
-            check()
+            _check(stop)
             log.write(f"{name}: cost {cost:.6g}")
             bar.set_postfix_str(f"cost {cost:.4g}", refresh=False)
             bar.update()
 
         result = fit(problem, x, progress)
-        check()  # answers of the last Jacobian may be NaN
+        _check(stop)  # answers of the last Jacobian may be NaN
         return result
 
 
@@ -195,53 +228,10 @@ def _drawn(problem: Problem, model: Model, result: Fit, stop) -> list[Curve]:
     fine = [replace(curve, H=H).refined(FINE) for curve, H in zip(problem.curves, result.answer.curves)]
     between = [curve.at(np.isnan(curve.H)) for curve in fine]
     (answer,) = model.with_curves(between).answers([problem.settings.parameters(result.x)])
-    if stop.is_set():
-        raise Interrupted("interrupted; the same command goes on after the search")
+    _check(stop)
     for curve, H in zip(fine, answer.curves):
         curve.H[np.isnan(curve.H)] = H
     return fine
-
-
-def _write_set(fmu: Fmu, problem: Problem, result: Fit, defaults: dict[str, Value], path: Path) -> Path:
-    settings = problem.settings
-    values = {**defaults, **settings.parameters(result.x)}
-    if settings.model == "linear":
-        names = ["suspension", *LINEAR_PARAMETERS]
-    else:
-        names = [name for name in values if not name.startswith(OTHER_PARAMETERS) and name != "k1"]
-    remarks = {
-        name: "identified, at its bound"
-        if result.at_bound[i]
-        else f"identified, standard error {result.standard_error[i]:.2g}"
-        for i, name in enumerate(settings.free)
-    }
-    remarks |= {name: f"tied to {tie.to}" for name, tie in settings.tied.items()}
-    files = ", ".join(source.path.name for source in settings.sources)
-    date = datetime.now(timezone.utc).strftime("%Y-%m-%d")
-    description = f"Identified from {files} on {date}, {settings.model} model{_preload(fmu, values, settings)}"
-    description += f"; see {path.parent.name}/identify.log"
-    write_set(path, fmu, {name: values[name] for name in names}, path.stem, description, remarks)
-    return path
-
-
-def _preload(fmu: Fmu, values: Mapping[str, Value], settings: Settings) -> str:
-    """The bench's static force, which the set leaves to the line; the linear model depends on none."""
-    if settings.model == "linear":
-        return ""
-    return f", at a static force of {with_unit(fmu.variables['static_force'], values['static_force'])}"
-
-
-def _write_points(fmu: Fmu, problem: Problem, result: Fit, path: Path) -> Path:
-    settings = problem.settings
-    own = {**_head(fmu, settings), "H": FrfSettings().described()["H"]}
-    columns = ["frequency [Hz]", "amplitude [m/s2]"]
-    columns += [f"{kind}_{part} [m/N]" for kind in ("measured", "fitted") for part in ("re", "im")]
-    columns += ["magnitude_error [%]", "phase_error [deg]"]
-    rows: list[tuple[float, ...]] = []
-    for curve, H in zip(problem.curves, result.answer.curves):
-        errors = 100 * report.magnitude_error(curve, H), report.phase_error(curve, H)
-        rows += zip(curve.frequency, curve.acceleration, curve.H.real, curve.H.imag, H.real, H.imag, *errors)
-    return write_table(path, file_head(fmu, settings.parameters(result.x), own), columns, rows, digits=None)
 
 
 class _Log:

@@ -91,6 +91,14 @@ class Search(Table):
         return 1 << (self.samples * parameters - 1).bit_length()
 
 
+class Uncertainty(Table):
+    """What is computed of it beside standard errors and correlations, each for many evaluations of the model."""
+
+    profiles: bool = Field(default=False, description="intervals by profile likelihood")
+    draws: int = Field(default=0, ge=0, le=100_000, description="from the posterior; 0 for none")
+    seed: int = Field(default=1, ge=0)
+
+
 class Static(Table):
     """A static test and its weight."""
 
@@ -151,6 +159,7 @@ class Settings(Table):
     fixed: Annotated[dict[str, Any], by_full_name()] = Field({}, description="once read, all that are given")
     tied: Annotated[dict[str, Tie], by_full_name(Tie)] = Field({})
     search: Search = Search()
+    uncertainty: Uncertainty = Uncertainty()
 
     @model_validator(mode="before")
     @classmethod

@@ -1,0 +1,42 @@
+"""Draws of parameters: a table of equally probable sets, as an identification leaves them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+from .errors import ZSpringError
+from .fmu import Fmu
+from .tables import read_table, write_table
+from .variables import Value
+
+
+def write_draws(
+    path: Path, fmu: Fmu, names: Sequence[str], rows: Iterable[Sequence[Value]], head: Mapping[str, str]
+) -> Path:
+    """One row for each draw, a column with its unit for each of these parameters."""
+    columns = [f"{name} [{fmu.variables[name].unit or 1}]" for name in names]
+    return write_table(path, {**fmu.identity, **head}, columns, rows, digits=None)
+
+
+def read_draws(path: Path, fmu: Fmu, but_not: Sequence[str] = ()) -> list[dict[str, Value]]:
+    """Parameters of each draw, in the FMU's units.
+
+    but_not     parameters that the command sets itself
+    Raises ZSpringError, with file and column, for one that is no Real parameter, a unit of another kind, a cell that is
+    no number, and a file without a row.
+    """
+    table = read_table(path)
+    columns: dict[str, list[float]] = {}
+    for column in table.columns:
+        name = table[column].name
+        try:
+            variable = fmu.variables.settable(name)
+        except ZSpringError as error:
+            raise ZSpringError(f"{path}: {error}") from None
+        if variable.type != "Real" or name in but_not:
+            raise ZSpringError(f"{path}: {name}: must be a Real parameter that the command does not set itself")
+        columns[name] = table.numbers(column, variable.unit or "1").tolist()
+    if not table.lines:
+        raise ZSpringError(f"{path}: has no draw")
+    return [dict(zip(columns, row)) for row in zip(*columns.values())]
