@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from linear import PUBLISHED, LinearPantograph
-from zspring.bench.measure import BENCHES, FrfPoint, FrfSettings, measure, sweeps
+from zspring.bench.measure import BENCHES, measure
+from zspring.bench.points import FrfPoint, FrfSettings, sweeps
 from zspring.fmu import Fmu
 from zspring.frf.files import frf_columns, frf_point, frf_row
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from zspring.bench.measure import FrfPoint, FrfSettings
+from zspring.bench.points import FrfPoint, FrfSettings
 from zspring.bench.refine import Extreme
 from zspring.fmu import Fmu
 from zspring.frf.report import (

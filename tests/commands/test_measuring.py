@@ -13,9 +13,10 @@ from scipy.integrate import quad
 from linear import PUBLISHED, LinearPantograph
 from zspring.bench.fmu_bench import FmuBench
 from zspring.bench.input_bench import InputBench
-from zspring.bench.measure import FrfSettings, left_out, measure, settle, sweeps
+from zspring.bench.measure import measure, settle
 from zspring.bench.measured import Curve
 from zspring.bench.model import BenchModel
+from zspring.bench.points import FrfSettings, left_out, sweeps
 from zspring.bench.refine import LEAST_STEP, turns
 from zspring.bench.responses import acceleration_of, as_quantity, phase_degrees, response_of
 from zspring.fmu import Fmu, StepDiscarded
@@ -189,7 +190,7 @@ def test_a_stopped_point_is_none():
 def test_a_sweep_has_the_points_that_the_stroke_allows_in_its_direction():
     """8 m/s2 at 1 Hz is 203 mm; 0.2 m/s2 just 5.07 mm."""
     settings = FrfSettings((0.2, 8.0), (1.0, 2.0, 3.0), stroke=0.0507)
-    assert [(s.amplitude, s.frequencies) for s in sweeps(settings)] == [(0.2, (1, 2, 3)), (8, (2, 3))]
+    assert [(s.level, s.frequencies) for s in sweeps(settings)] == [(0.2, (1, 2, 3)), (8, (2, 3))]
     (missing,) = left_out(settings)
     assert (missing.amplitude, missing.frequency, missing.status) == (8, 1, "left out")
     assert np.isnan(missing.H) and np.isnan(missing.change)
@@ -197,8 +198,8 @@ def test_a_sweep_has_the_points_that_the_stroke_allows_in_its_direction():
     assert counts == (0, 0, 0, 0, 0)
     assert [s.frequencies for s in sweeps(replace(settings, direction="down"))] == [(3, 2, 1), (3, 2)]
     rest = sweeps(replace(settings, direction="rest"))
-    assert [(s.amplitude, *s.frequencies) for s in rest] == [(0.2, 1), (0.2, 2), (0.2, 3), (8, 2), (8, 3)]
-    assert [s.amplitude for s in sweeps(replace(settings, stroke=0.02))] == [0.2]
+    assert [(s.level, *s.frequencies) for s in rest] == [(0.2, 1), (0.2, 2), (0.2, 3), (8, 2), (8, 3)]
+    assert [s.level for s in sweeps(replace(settings, stroke=0.02))] == [0.2]
 
 
 def test_the_standard_figure_doubles_its_amplitudes_over_half_a_hertz_to_twenty():

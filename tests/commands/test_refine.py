@@ -12,7 +12,8 @@ from scipy.optimize import minimize_scalar
 
 from linear import PUBLISHED, LinearPantograph
 from zspring.bench.fmu_bench import FmuBench
-from zspring.bench.measure import FrfPoint, FrfSettings, measure, run_sweep, sweeps
+from zspring.bench.measure import measure, run_sweep
+from zspring.bench.points import FrfPoint, FrfSettings, sweeps
 from zspring.bench.refine import JUMP, Extreme, Refinement, refine, refining
 from zspring.fmu import Fmu
 from zspring.frf.bounds import exact_extremes

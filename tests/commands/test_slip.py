@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from linear import LinearPantograph, ZSpringLinear
-from zspring.bench.measure import FmuBench, FrfSettings
+from zspring.bench.measure import FmuBench
+from zspring.bench.points import FrfSettings
 from zspring.bench.slip import FULL, PARTIAL, SLIDES, SLIP, Raising, SlipPoint, bounds, missing, raise_amplitude
 from zspring.cli import main
 from zspring.fmu import Fmu

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from commands import table, zspring
-from zspring.bench.measure import FrfSettings
+from zspring.bench.points import FrfSettings
 from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
 from zspring.study.design import make_cases

@@ -25,7 +25,7 @@ from tqdm import tqdm
 
 from probe import probe_folder
 from zspring.bench.fixed_work import PERIODS, Work, figure_points, run_points
-from zspring.bench.measure import FrfSettings
+from zspring.bench.points import FrfSettings
 from zspring.fmu import CATENARY, Fmu, Instance, installed_fmu
 from zspring.line.journey import Journey
 from zspring.line.run import run_line

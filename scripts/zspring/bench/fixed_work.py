@@ -13,7 +13,7 @@ import numpy as np
 
 from ..fmu import Instance, StepDiscarded
 from ..variables import Value
-from .measure import FrfSettings, sweeps
+from .points import FrfSettings, sweeps
 
 PERIODS = 30
 COUNTERS = ["solver.steps", "solver.iterations", "solver.iterations_max", "solver.refinements"]
@@ -37,7 +37,7 @@ class Work:
 
 def figure_points(settings: FrfSettings) -> list[Point]:
     """The points of a figure that its stroke allows."""
-    return [(sweep.amplitude, frequency) for sweep in sweeps(settings) for frequency in sweep.frequencies]
+    return [(sweep.level, frequency) for sweep in sweeps(settings) for frequency in sweep.frequencies]
 
 
 def run_points(instance: Instance, parameters: Mapping[str, Value], points: Iterable[Point]) -> Work:

@@ -44,8 +44,8 @@ class InputBench:
     def tune(self, frequency: float, acceleration: float) -> None:
         """Go over to another frequency (Hz) and peak acceleration (m/s2) without stopping."""
         self._target = (frequency, acceleration / (2 * math.pi * frequency) ** 2)
-        # The FMU's own bench is not used here, but its grid is.
-        self.instance.set({"bench.frequency": frequency})
+        # The FMU's own bench is not used here, but its grid is, and it keeps the acceleration in its state.
+        self.instance.set({"bench.frequency": frequency, "bench.acceleration": acceleration})
         self._steps = int(*self.instance.get(["bench.steps_per_period"]))
         self._force = np.zeros(self._steps)
         self.H, self.change, self.periods = 0j, 1.0, 0

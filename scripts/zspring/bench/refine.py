@@ -16,7 +16,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from .measure import NOT_SETTLED, SETTLED, Bench, FrfPoint, FrfSettings, Kept, Sweep, run_sweep
+from .measure import Bench, run_sweep
+from .points import NOT_SETTLED, SETTLED, FrfPoint, FrfSettings, Kept, Sweep
 
 LEAST_STEP = 0.03  # of log |H| between neighbouring extremes; smaller ones are ripple, not resonances
 EXPECTED = 0.01  # of log H: distance of a point from what its neighbours let expect, in a resolved curve
@@ -112,7 +113,7 @@ def refine(bench: Bench, task: Refinement, settings: FrfSettings, stop: threadin
             if frequency not in done:
                 before = [f for f in done if (f > frequency if down else f < frequency)]
                 state = done[(min if down else max)(before)][1] if before else None
-                one = Sweep(task.sweep[0][0].amplitude, (frequency,), state)
+                one = Sweep(task.sweep[0][0].level, (frequency,), state)
                 for result in run_sweep(bench, one, finer if at_extreme else settings, stop):
                     done[frequency] = result
                     yield result

@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 from ..fmu import StepDiscarded
-from .measure import FAILED, Bench, FmuBench, FrfSettings, settle
+from .measure import Bench, FmuBench, settle
+from .points import FAILED, FrfSettings
 
 SLIDES, FULL = 0.95, 0.9
 WIDTH = 0.02  # relative, between amplitudes of different states at the end of the search

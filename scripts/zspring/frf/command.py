@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import click
 
+from ..bench.control import CONTROLS
 from ..bench.curves import SENSES, Source
-from ..bench.measure import BENCH_PARAMETERS, BENCHES, FrfSettings
+from ..bench.measure import BENCH_PARAMETERS, BENCHES
+from ..bench.points import FrfSettings
 from ..bench.responses import QUANTITIES
 from ..bench.steady import LOOK_PERIODS
 from ..options import (
@@ -31,6 +33,14 @@ STANDARD = FrfSettings()
     None,
     "Peak accelerations of the imposed sine in m/s2, e.g. 0.25,4.  [default: 0.25,0.5,1,2,4,8, or those of --measured]",
 )
+@choice(
+    "--control",
+    of=CONTROLS,
+    default=STANDARD.control,
+    help="What the bench holds at all frequencies: the peak of the imposed motion, or that of the contact force's "
+    "first harmonic, for which the motion's is found by iteration.",
+)
+@numbers("--levels", None, "Levels of what is controlled, in m/s2, m/s, m or N, instead of --amplitudes.")
 @numbers(
     "--frequencies",
     STANDARD.frequencies,
@@ -118,6 +128,7 @@ def frf(
     jobs,
     suffix,
     amplitudes,
+    levels,
     direction,
     **settings,
 ) -> None:
@@ -135,6 +146,12 @@ def frf(
     if settings["max_periods"] < settings["min_periods"]:
         text = "{max_periods}: must not be below --min-periods {min_periods}".format(**settings)
         raise click.BadParameter(text, param_hint="--max-periods")
+    if amplitudes and levels:
+        raise click.BadParameter("must not be given with --amplitudes", param_hint="--levels")
+    if settings["control"] != STANDARD.control and not levels:
+        text = f"{settings['control']}: needs --levels, in {CONTROLS[settings['control']]}"
+        raise click.BadParameter(text, param_hint="--control")
+    amplitudes = levels or amplitudes
     from .overlay import amplitudes_of, stated
     from .run import Wanted, default_folder, run_frf  # matplotlib is slow to load
 

@@ -6,9 +6,11 @@ import math
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
 
-from ..bench.measure import BENCHES, FrfPoint, FrfSettings, Kept, Sweep, at_a_time, left_out, measure, sweeps
+from ..bench.measure import BENCHES, at_a_time, measure
+from ..bench.points import LEFT_OUT, FrfPoint, FrfSettings, Kept, Sweep, left_out, sweeps
 from ..bench.refine import AT_EXTREME, Extreme, Refinement, refine
 from ..fmu import Fmu
 from ..records import Record, fill
@@ -16,16 +18,16 @@ from ..variables import Value
 from .files import frf_record, remaining, write_frf
 from .report import frf_head, richardson
 
-Key = tuple[float, float]  # amplitude in m/s2 and frequency in Hz
+Key = tuple[float, float]  # level in the unit of the control, and frequency in Hz
 
 
 class Course:
     """Measures in a folder, into records from which it goes on after an interruption.
 
     path        of their file
-    points      asked for, by amplitude and frequency, with those left out
+    points      asked for, by level and frequency, with those left out
     beside      other ones, around the extremes
-    extremes    by amplitude in m/s2
+    extremes    by level
     errors      relative ones of H by half the step, where they were asked for
     Its methods raise Interrupted after Ctrl-C; finished points are kept.
     """
@@ -45,38 +47,40 @@ class Course:
         """The points asked for; a line on the time they took."""
         record = self._record(self.settings, "partial")
         points, missing, seconds = self._sweep(record, self.settings, sweeps(self.settings), self._name)
-        self.points = sorted([*points, *left_out(self.settings)], key=place)
+        self.points = sorted([*points, *left_out(self.settings)], key=attrgetter("place"))
         count = f"{missing} of {len(points)}" if missing < len(points) else len(points)
         return (
             f"{count} points in {seconds:.2f} s, {missing / max(seconds, 1e-9):.0f} points/s; "
-            f"{len(self.points) - len(points)} left out: stroke > {1e3 * self.settings.stroke:g} mm"
+            f"{sum(p.status == LEFT_OUT for p in self.points)} left out: stroke > {1e3 * self.settings.stroke:g} mm"
         )
 
     def refine(self) -> str:
         """The extremes, by points beside those asked for and some of them at half the step; a line on the time."""
-        record, asked = self._records[0], {place(p) for p in self.points}
+        record, asked = self._records[0], {p.place for p in self.points}
 
         def tasks() -> list[Refinement]:
             result = []
-            for amplitude in self.settings.amplitudes:
-                kept = [each for each in record.results if each[0].amplitude == amplitude]
-                sweep = [each for each in kept if place(each[0]) in asked]
+            for level in self.settings.amplitudes:
+                kept = [each for each in record.results if each[0].level == level]
+                sweep = [each for each in kept if each[0].place in asked]
                 if sweep:
-                    result.append(Refinement(sweep, [each for each in kept if place(each[0]) not in asked]))
+                    result.append(Refinement(sweep, [each for each in kept if each[0].place not in asked]))
             return result
 
         def work(stop: threading.Event) -> Iterator[Kept]:
             return at_a_time(refine, self._fmu, self.settings, tasks(), self._jobs, stop)
 
         seconds = fill(record, None, 0, "points", work, f"{self._name}, extremes")
-        self.beside = sorted((point for point, _ in record.results if place(point) not in asked), key=place)
-        self.extremes = {task.sweep[0][0].amplitude: task.extremes() for task in tasks()}
+        self.beside = sorted(
+            (point for point, _ in record.results if point.place not in asked), key=attrgetter("place")
+        )
+        self.extremes = {task.sweep[0][0].level: task.extremes() for task in tasks()}
         finer = self._at_half_step(self.settings.tolerance * AT_EXTREME)
         way = -1 if self.settings.direction == "down" else 1
         about = [(a, [p.frequency for p in e.about][::way]) for a, found in self.extremes.items() for e in found]
-        planned = [Sweep(amplitude, tuple(frequencies)) for amplitude, frequencies in about if frequencies]
+        planned = [Sweep(level, tuple(frequencies)) for level, frequencies in about if frequencies]
         points, _, more = self._sweep(self._record(finer, "extremes"), finer, planned, f"{self._name}, half step")
-        halved = {place(p): p for p in points}
+        halved = {p.place: p for p in points}
         for a, found in self.extremes.items():
             self.extremes[a] = [e.checked([halved[a, p.frequency] for p in e.about]) if e.about else e for e in found]
         count = sum(map(len, self.extremes.values()))
@@ -87,8 +91,8 @@ class Course:
         """Those of the points asked for, by half the step."""
         finer = self._at_half_step(self.settings.tolerance)
         points, _, _ = self._sweep(self._record(finer, "half-step"), finer, sweeps(finer), f"{self._name}, half step")
-        H = {place(p): p.H for p in points}
-        errors = {place(p): richardson(p.H, H[place(p)]) for p in self.points if place(p) in H}
+        H = {p.place: p.H for p in points}
+        errors = {p.place: richardson(p.H, H[p.place]) for p in self.points if p.place in H}
         self.errors = {key: error for key, error in errors.items() if math.isfinite(error)}
 
     def write(self) -> list[Path]:
@@ -125,13 +129,8 @@ class Course:
             return measure(self._fmu, settings, todo, self._jobs, stop)
 
         seconds = fill(record, total, missing, "points", work, label)
-        points = {place(point): point for point, _ in record.results}
-        return [points[sweep.amplitude, f] for sweep in planned for f in sweep.frequencies], missing, seconds
-
-
-def place(point: FrfPoint) -> Key:
-    """Where the point is in a figure."""
-    return point.amplitude, point.frequency
+        points = {point.place: point for point, _ in record.results}
+        return [points[sweep.level, f] for sweep in planned for f in sweep.frequencies], missing, seconds
 
 
 def all_parameters(fmu: Fmu, settings: FrfSettings) -> dict[str, Value]:

@@ -11,17 +11,17 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..bench.fmu_bench import HARMONICS
-from ..bench.measure import FrfPoint
+from ..bench.points import FrfPoint
 from ..figures import new_figure
-from .plot import WAY_STYLES, amplitude_colors
+from .plot import LEVELS, WAY_STYLES, level_colors, shown
 
 LEAST = 0.01  # % of the first harmonic; harmonics below are not drawn
 
 
 def cycle_figure(ways: Mapping[str, Sequence[FrfPoint]], title: str) -> Figure:
-    """Nine panels over frequency, one colour for each amplitude; `ways` has the points by direction."""
+    """Nine panels over frequency, one colour for each level; `ways` has the points by direction."""
     every = [point for points in ways.values() for point in points]
-    colors = amplitude_colors(every)
+    colors, unit = level_colors(every), every[0].unit
     quantities: dict[str, Callable[[FrfPoint], float]] = {
         "loss per cycle  [J]": attrgetter("loss"),
         "equivalent stiffness  [N/m]": attrgetter("stiffness"),
@@ -32,8 +32,8 @@ def cycle_figure(ways: Mapping[str, Sequence[FrfPoint]], title: str) -> Figure:
     axes = figure.subplots(3, 3, sharex=True)
     for a, (label, quantity) in zip(axes.flat, quantities.items()):
         for way, points in ways.items():
-            for amplitude, color in colors.items():
-                curve = [p for p in points if p.amplitude == amplitude]
+            for level, color in colors.items():
+                curve = [p for p in points if p.level == level]
                 x, y = [p.frequency for p in curve], [quantity(p) for p in curve]
                 a.plot(x, y, color=color, linestyle=WAY_STYLES[way], linewidth=1.1, marker=".", markersize=2)
         if "stiffness" not in label:  # whose sign changes with inertia
@@ -46,7 +46,7 @@ def cycle_figure(ways: Mapping[str, Sequence[FrfPoint]], title: str) -> Figure:
         a.xaxis.set_major_locator(MaxNLocator(10))
     for a in axes[-1]:
         a.set(xlabel="frequency  [Hz]")
-    handles = [Line2D([], [], color=tuple(color), label=f"{amplitude:g} m/s²") for amplitude, color in colors.items()]
+    handles = [Line2D([], [], color=tuple(color), label=shown(level, unit)) for level, color in colors.items()]
     if len(ways) > 1:
         handles += [Line2D([], [], color="gray", ls=WAY_STYLES[way], label=f"sweep {way}") for way in ways]
     figure.legend(
@@ -54,7 +54,7 @@ def cycle_figure(ways: Mapping[str, Sequence[FrfPoint]], title: str) -> Figure:
         fontsize=8,
         ncols=len(handles),
         loc="outside lower center",
-        title="peak acceleration of the head",
+        title=LEVELS[unit],
         title_fontsize=8,
     )
     figure.suptitle(title, fontsize=11)

@@ -8,10 +8,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ..bench.fmu_bench import HARMONICS
-from ..bench.measure import FrfPoint, Kept, Sweep
+from ..bench.points import FrfPoint, Kept, Sweep
 from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
 from ..records import Record
 from ..tables import write_table
+from ..variables import exact
 from .report import Row
 
 _HARMONICS = [f"harmonic_{n} [N]" for n in HARMONICS]
@@ -39,6 +40,8 @@ def frf_columns(quantity: str) -> list[str]:
         "loss [J]",
         "stiffness [N/m]",
         "damping [N.s/m]",
+        "force [N]",
+        "level",
     ]
 
 
@@ -50,6 +53,7 @@ def frf_row(point: FrfPoint, quantity: str) -> list[object]:
         *(abs(value), float(phase_degrees(value, quantity)), point.periods, point.change, point.status),
         *(point.steps, point.iterations, point.refinements, point.iterations_max),
         *(point.remaining, *point.harmonics, point.loss, point.stiffness, point.damping),
+        *(point.force, f"{exact(point.level)} {point.unit}"),
     ]
 
 
@@ -59,6 +63,7 @@ def frf_point(row: Mapping[str, str]) -> FrfPoint:
     def number(column: str) -> float:
         return float(row[column] or "nan")
 
+    level, unit = row["level"].split()
     return FrfPoint(
         amplitude=number("amplitude [m/s2]"),
         frequency=number("frequency [Hz]"),
@@ -73,6 +78,8 @@ def frf_point(row: Mapping[str, str]) -> FrfPoint:
         remaining=number("remaining"),
         harmonics=tuple(map(number, _HARMONICS)),
         loss=number("loss [J]"),
+        level=float(level),
+        unit=unit,
     )
 
 
@@ -92,13 +99,13 @@ def frf_record(path: Path, head: Mapping[str, str], quantity: str) -> Record[Kep
 
 def remaining(record: Record[Kept], sweeps: Iterable[Sweep]) -> list[Sweep]:
     """What is still to be measured of these sweeps, each from the state after its last point so far."""
-    states = {(point.amplitude, point.frequency): state for point, state in record.results}
+    states = {point.place: state for point, state in record.results}
     rest = []
     for sweep in sweeps:
-        keys = [(sweep.amplitude, frequency) for frequency in sweep.frequencies]
+        keys = [(sweep.level, frequency) for frequency in sweep.frequencies]
         done = next((i for i, key in enumerate(keys) if key not in states), len(keys))
         if done < len(keys):
-            rest.append(Sweep(sweep.amplitude, sweep.frequencies[done:], states[keys[done - 1]] if done else None))
+            rest.append(Sweep(sweep.level, sweep.frequencies[done:], states[keys[done - 1]] if done else None))
     return rest
 
 
@@ -109,11 +116,11 @@ def write_frf(
     quantity: str,
     errors: Mapping[tuple[float, float], float] | None = None,
 ) -> Path:
-    """The finished FRF file; `errors` are relative error estimates by (amplitude, frequency)."""
+    """The finished FRF file; `errors` are relative error estimates by level and frequency."""
     columns, rows = frf_columns(quantity), [frf_row(point, quantity) for point in points]
     if errors:
         columns.append("error_estimate")
-        rows = [[*row, errors.get((point.amplitude, point.frequency), math.nan)] for row, point in zip(rows, points)]
+        rows = [[*row, errors.get(point.place, math.nan)] for row, point in zip(rows, points)]
     return write_table(path, head, columns, rows, digits=None)
 
 

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from ..bench.compare import LevelComparison
-from ..bench.measure import LEFT_OUT, NOT_SETTLED, REPEATS, FrfPoint, differences
+from ..bench.points import LEFT_OUT, NOT_HELD, NOT_SETTLED, REPEATS, FrfPoint, differences
 from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
 from ..figures import new_figure
 from ..receptance import LinearModel
@@ -26,9 +26,19 @@ BOUND_LABELS = {
 }
 
 
-NEAR = 0.1  # relative: amplitudes that far apart have one colour
+NEAR = 0.1  # relative: accelerations that far apart have one colour
 WAY_STYLES = {"up": "-", "down": "--", "rest": "-"}
-MARKS = {NOT_SETTLED: ("o", "not settled"), REPEATS: ("D", "repeats only after several periods")}
+MARKS = {
+    NOT_SETTLED: ("o", "not settled"),
+    REPEATS: ("D", "repeats only after several periods"),
+    NOT_HELD: ("s", "force not held: it jumps"),
+}
+LEVELS = {
+    "m/s2": "peak acceleration of the head",
+    "m/s": "peak velocity of the head",
+    "m": "peak displacement of the head",
+}
+LEVELS |= {"N": "peak of the contact force's first harmonic"}
 
 
 def frf_figure(
@@ -39,7 +49,7 @@ def frf_figure(
     stroke: float,
     title: str,
 ) -> Figure:
-    """Magnitude and phase over frequency, one colour for each amplitude, between the linear bounds.
+    """Magnitude and phase over frequency, one colour for each level, between the linear bounds.
 
     ways        by direction: points asked for, and others around the extremes, which are drawn without markers; of two
                 the difference is drawn as well
@@ -59,16 +69,16 @@ def frf_figure(
         magnitude.semilogy(fine, np.abs(value), label=BOUND_LABELS[model], **style)
         phase.plot(fine, phase_degrees(value, quantity), **style)
 
-    colors = amplitude_colors(every)
+    colors, unit = level_colors(every), every[0].unit
     for way, (points, beside) in ways.items():
         asked = set(points)
-        for number, (amplitude, color) in enumerate(colors.items()):
-            curve = sorted((p for p in (*points, *beside) if p.amplitude == amplitude), key=lambda p: p.frequency)
+        for number, (level, color) in enumerate(colors.items()):
+            curve = sorted((p for p in (*points, *beside) if p.level == level), key=lambda p: p.frequency)
             frequency = np.array([p.frequency for p in curve])
             value = as_quantity(np.array([p.H for p in curve]), quantity)
             style = {"color": color, "linestyle": WAY_STYLES[way], "linewidth": 1.2, "marker": ".", "markersize": 3}
             style["markevery"] = [i for i, p in enumerate(curve) if p in asked]
-            label = f"{amplitude:g} m/s²" if way != "down" or not both else None
+            label = shown(level, unit) if way != "down" or not both else None
             magnitude.semilogy(frequency, np.abs(value), label=label, **style)
             phase.plot(frequency, phase_degrees(value, quantity), **style)
             for status, (marker, _) in MARKS.items():
@@ -78,8 +88,8 @@ def frf_figure(
             height = np.full(missing.shape, 0.02 + 0.022 * number)
             magnitude.plot(missing, height, "x", color=color, markersize=4, transform=magnitude.get_xaxis_transform())
 
-    for level in levels:
-        _draw_measured(magnitude, phase, level, colors, quantity)
+    for measured in levels:
+        _draw_measured(magnitude, phase, measured, colors if unit == "m/s2" else {}, quantity)
 
     handles = magnitude.get_legend_handles_labels()[0]
     if both:
@@ -89,16 +99,16 @@ def frf_figure(
             handles.append(
                 Line2D([], [], color="gray", ls="none", marker=marker, fillstyle="none", markersize=5, label=label)
             )
-    magnitude.legend(handles=handles, fontsize=8, ncols=2, title="peak acceleration of the head", title_fontsize=8)
+    magnitude.legend(handles=handles, fontsize=8, ncols=2, title=LEVELS[unit], title_fontsize=8)
     symbol = {"receptance": "|H|, receptance", "stiffness": "|1/H|, dynamic stiffness"}[quantity]
     magnitude.set(title=title, ylabel=f"{symbol}  [{QUANTITIES[quantity]}]")
     phase.set(ylabel="phase  [deg]")
     phase.yaxis.set_major_locator(MultipleLocator(45))
     for axes in rest:
         found = differences(*(points for points, _ in ways.values()))
-        for amplitude, color in colors.items():
-            x = [f for a, f in found if a == amplitude]
-            axes.semilogy(x, [100 * found[amplitude, f] for f in x], ".-", color=color, linewidth=0.8, markersize=3)
+        for level, color in colors.items():
+            x = [f for a, f in found if a == level]
+            axes.semilogy(x, [100 * found[level, f] for f in x], ".-", color=color, linewidth=0.8, markersize=3)
         axes.set(ylabel=f"{' and '.join(ways)} differ by  [%]")
     for axes in (magnitude, phase, *rest):
         axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
@@ -125,7 +135,12 @@ def _draw_measured(
         phase.plot(frequency, phase_degrees(value, quantity), zorder=4, **style)
 
 
-def amplitude_colors(points: Sequence[FrfPoint]) -> dict[float, np.ndarray]:
-    """A colour for each amplitude, ascending."""
-    amplitudes = sorted({point.amplitude for point in points})
-    return dict(zip(amplitudes, matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(amplitudes)))))
+def level_colors(points: Sequence[FrfPoint]) -> dict[float, np.ndarray]:
+    """A colour for each level, ascending."""
+    levels = sorted({point.level for point in points})
+    return dict(zip(levels, matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(levels)))))
+
+
+def shown(level: float, unit: str) -> str:
+    """A level in a legend."""
+    return f"{1e3 * level:g} mm" if unit == "m" else f"{level:g} {unit}".replace("m/s2", "m/s²")

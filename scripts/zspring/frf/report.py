@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, REPEATS, FrfPoint, FrfSettings, differences
+from ..bench.measure import BENCH_PARAMETERS
+from ..bench.points import FAILED, NOT_HELD, NOT_SETTLED, REPEATS, FrfPoint, FrfSettings, differences
 from ..bench.refine import JUMP, Extreme
 from ..fmu import Fmu
 from ..heads import file_head, model_note, now, synthetic_note
@@ -21,7 +22,7 @@ ERROR_LIMIT = 0.01  # of |H|, by the estimate from half the step; more is warned
 
 @dataclass(frozen=True)
 class Row:
-    """Extremes of one curve, ascending: of a linear bound, or of an amplitude swept in a direction."""
+    """Extremes of one curve, ascending: of a linear bound, or of a level swept in a direction."""
 
     curve: str
     direction: str
@@ -54,22 +55,24 @@ def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], pant
         settings.direction, f"sweep {settings.direction}"
     )
     about = f"{model_note(fmu, parameters)}, {course}{synthetic_note(fmu, parameters)}"
-    return f"First-order FRF at the head, {pantograph}\n{about}"
+    held = "" if settings.control == "acceleration" else f", {settings.control} held"
+    return f"First-order FRF at the head{held}, {pantograph}\n{about}"
 
 
 def resonance_rows(
     measured: Mapping[str, Mapping[float, Sequence[Extreme]]],
     bounds: Mapping[str, LinearModel],
     band: tuple[float, float],
+    unit: str,
 ) -> list[Row]:
-    """Extremes of the receptance, of the amplitudes between the linear bounds.
+    """Extremes of the receptance, of the levels between the linear bounds.
 
-    measured    by direction and amplitude (m/s2)
+    measured    by direction and level (in `unit`)
     band        Hz, where those of the bounds are looked for; they are exact
     """
     first, *last = (Row(name, "", exact_extremes(model, band)) for name, model in bounds.items())
-    amplitudes = sorted({amplitude for found in measured.values() for amplitude in found})
-    middle = [Row(f"{a:g} m/s2", way, found[a]) for a in amplitudes for way, found in measured.items()]
+    levels = sorted({level for found in measured.values() for level in found})
+    middle = [Row(f"{level:g} {unit}", way, found[level]) for level in levels for way, found in measured.items()]
     return [first, *middle, *last]
 
 
@@ -90,17 +93,17 @@ def resonance_table(rows: Sequence[Row]) -> list[str]:
 
 
 def difference_lines(up: Sequence[FrfPoint], down: Sequence[FrfPoint], tolerance: float) -> list[str]:
-    """How far the sweep down is from the sweep up by amplitude, and at how many points that is no transient."""
+    """How far the sweep down is from the sweep up by level, and at how many points that is no transient."""
     found = differences(up, down)
     if not found:
         return []
     worst = []
-    for amplitude in dict.fromkeys(a for a, _ in found):
-        place = max((key for key in found if key[0] == amplitude), key=found.__getitem__)
-        worst.append(f"{100 * found[place]:.2g} % at {amplitude:g} m/s2 ({place[1]:g} Hz)")
-    left = {(p.amplitude, p.frequency): 0.0 for p in up}
+    for level in dict.fromkeys(level for level, _ in found):
+        place = max((key for key in found if key[0] == level), key=found.__getitem__)
+        worst.append(f"{100 * found[place]:.2g} % at {level:g} {up[0].unit} ({place[1]:g} Hz)")
+    left = {p.place: 0.0 for p in up}
     for p in (*up, *down):
-        left[p.amplitude, p.frequency] += max(p.remaining, tolerance)
+        left[p.place] += max(p.remaining, tolerance)
     other = sum(difference > left[key] for key, difference in found.items())
     lines = [f"up and down differ by at most {', '.join(worst)}"]
     if other:
@@ -124,12 +127,12 @@ def richardson(H: complex, H_half: complex) -> float:
     return 4 / 3 * abs(H - H_half) / abs(H)
 
 
-def error_line(errors: Mapping[tuple[float, float], float]) -> str:
-    """Median and worst of the estimates by (amplitude, frequency)."""
-    (amplitude, frequency), worst = max(errors.items(), key=lambda item: item[1])
+def error_line(errors: Mapping[tuple[float, float], float], unit: str = "m/s2") -> str:
+    """Median and worst of the estimates by level (in `unit`) and frequency."""
+    (level, frequency), worst = max(errors.items(), key=lambda item: item[1])
     return (
         f"error estimate of H from half the step: {100 * np.median(list(errors.values())):.2g} % median, "
-        f"{100 * worst:.2g} % worst (at {frequency:g} Hz, {amplitude:g} m/s2)"
+        f"{100 * worst:.2g} % worst (at {frequency:g} Hz, {level:g} {unit})"
     )
 
 
@@ -142,7 +145,7 @@ def error_warnings(errors: Mapping[tuple[float, float], float]) -> list[str]:
 
 
 def doubtful_lines(points: Iterable[FrfPoint]) -> list[str]:
-    """One line for each point that did not settle, repeats only after several periods, or failed."""
+    """One line for each point that did not settle, repeats only after several periods, was not held, or failed."""
     lines = []
     for p in points:
         about = ""
@@ -150,9 +153,9 @@ def doubtful_lines(points: Iterable[FrfPoint]) -> list[str]:
             about = f" after {p.periods} periods (change {p.change:.2g}, about {p.remaining:.2g} from steady)"
         elif p.status.startswith(REPEATS):
             about = f": repeats only after so many periods of the drive (change {p.change:.2g})"
-        elif not p.status.startswith(FAILED):
+        elif not p.status.startswith((FAILED, NOT_HELD)):
             continue
-        lines.append(f"{p.amplitude:g} m/s2, {p.frequency:g} Hz: {p.status}{about}")
+        lines.append(f"{p.label}, {p.frequency:g} Hz: {p.status}{about}")
     return lines
 
 

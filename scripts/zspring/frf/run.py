@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..bench.compare import FrfComparison, compare_frf, write_comparison
 from ..bench.curves import Source
-from ..bench.measure import FAILED, FrfSettings, sweeps
+from ..bench.points import FAILED, FrfSettings, sweeps
 from ..errors import ZSpringError, tell
 from ..figures import save
 from ..fmu import Fmu
@@ -80,7 +80,7 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
     written = [path for course in courses.values() for path in course.write()]
     if wanted.extremes:
         found = {way: course.extremes for way, course in courses.items()}
-        rows = report.resonance_rows(found, bounds, _band(settings))
+        rows = report.resonance_rows(found, bounds, _band(settings), settings.unit)
         written.append(write_resonances(table, head, rows))
         lines[:0] = report.resonance_table(rows)
     if comparison and wanted.measured:
@@ -100,7 +100,7 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
     if len(ways) > 1:
         lines += report.difference_lines(courses["up"].points, courses["down"].points, settings.tolerance)
     lines += distance_lines(levels)
-    lines += [report.error_line(course.errors) for course in courses.values() if course.errors]
+    lines += [report.error_line(course.errors, settings.unit) for course in courses.values() if course.errors]
     print(*lines, sep="\n")
     print("written:", *written)
     if comparison:

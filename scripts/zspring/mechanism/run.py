@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bench.measure import FrfSettings
+from ..bench.points import FrfSettings
 from ..errors import ZSpringError
 from ..figures import save
 from ..fmu import Fmu

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import click
 
-from ..bench.measure import BENCH_PARAMETERS, FrfSettings
+from ..bench.measure import BENCH_PARAMETERS
+from ..bench.points import FrfSettings
 from ..options import POSITIVE, format_option, jobs_option, numbers, option, output_option, pantograph_options
 from ..records import claimed
 

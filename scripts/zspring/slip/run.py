@@ -8,7 +8,8 @@ import threading
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ..bench.measure import BENCH_PARAMETERS, FAILED, NOT_SETTLED, FrfPoint, FrfSettings, at_a_time
+from ..bench.measure import BENCH_PARAMETERS, at_a_time
+from ..bench.points import FAILED, NOT_SETTLED, FrfSettings, left_out
 from ..bench.slip import FULL, PARTIAL, SLIDES, SLIP, WIDTH, Kept, Raising, SlipPoint, bounds, raise_amplitude
 from ..errors import ZSpringError, tell
 from ..figures import save
@@ -86,7 +87,8 @@ def _head(fmu: Fmu, settings: FrfSettings, used: Mapping[str, Value]) -> dict[st
 
 def _allowed(settings: FrfSettings, frequency: float) -> tuple[float, ...]:
     """The amplitudes that the stroke leaves."""
-    return tuple(a for a in settings.amplitudes if FrfPoint(a, frequency, "").displacement <= settings.stroke)
+    beyond = {point.place for point in left_out(settings)}
+    return tuple(a for a in settings.amplitudes if (a, frequency) not in beyond)
 
 
 def _raising(settings: FrfSettings, frequency: float, results: Sequence[Kept]) -> Raising:

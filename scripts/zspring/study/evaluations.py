@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from ..bench.fmu_bench import FmuBench
 from ..bench.loops import measure_loop
-from ..bench.measure import FAILED, NOT_SETTLED, REPEATS, FrfSettings, Kept, run_sweep, sweeps
+from ..bench.measure import run_sweep
+from ..bench.points import FAILED, NOT_SETTLED, REPEATS, FrfSettings, Kept, sweeps
 from ..bench.refine import Refinement, refine
 from ..fmu import Instance
 from ..variables import Value, exact, exact_list, parse, text
@@ -27,7 +28,7 @@ class FrfQuantity:
     @property
     def points(self) -> list[tuple[float, float]]:
         """Amplitude (m/s2) and frequency (Hz) of all points within the stroke."""
-        return [(sweep.amplitude, frequency) for sweep in sweeps(self.settings) for frequency in sweep.frequencies]
+        return [(sweep.level, frequency) for sweep in sweeps(self.settings) for frequency in sweep.frequencies]
 
     @property
     def scalars(self) -> list[str]:

@@ -11,7 +11,8 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, Strict, model_validator
 
-from ..bench.measure import BENCH_PARAMETERS, FrfSettings
+from ..bench.measure import BENCH_PARAMETERS
+from ..bench.points import FrfSettings
 from ..bench.steady import LOOK_PERIODS
 from ..errors import ZSpringError
 from ..fmu import Fmu

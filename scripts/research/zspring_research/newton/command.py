@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from zspring.bench.measure import FrfSettings
+from zspring.bench.points import FrfSettings
 from zspring.options import format_option, numbers, option, output_option, pantograph_options
 from zspring.records import claimed
 

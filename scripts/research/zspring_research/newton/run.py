@@ -11,7 +11,7 @@ import numpy as np
 from tqdm import tqdm
 
 from zspring.bench.fixed_work import PERIODS, Point, figure_points
-from zspring.bench.measure import FrfSettings
+from zspring.bench.points import FrfSettings
 from zspring.errors import ZSpringError
 from zspring.figures import save
 from zspring.fmu import Fmu, Instance
