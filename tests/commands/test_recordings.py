@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from commands import head, table
+from commands import head, in_process, table
 from paths import ROOT
-from shaker import BASE, FOUR, LINEAR, STATIC_FORCE, Shaken, assert_linear, found, shaken, write_text, written
+from shaker import BASE, FOUR, LINEAR, STATIC_FORCE, Shaken, assert_linear, found, shaken, swept, write_text, written
 from zspring.bench.fmu_bench import FmuBench
 from zspring.fmu import Fmu
 from zspring.recordings.evaluate import evaluate
@@ -89,6 +90,28 @@ def test_harmonics_beyond_the_sampling_rate_are_not_told(tmp_path):
     rows = table(tmp_path / "out" / "frf.csv")
     assert [rows[1][f"harmonic_{k} [N]"] != "" for k in range(2, 8)] == [True, True, False, False, False, False]
     assert rows[0]["harmonic_5 [N]"] != ""
+
+
+@pytest.mark.parametrize("octaves, way", [(False, (2.0, 8.0)), (True, (8.0, 2.0))])
+def test_a_slow_sweep_gives_the_response_within_its_errors(tmp_path, octaves, way):
+    """Up in Hz/s, down in octaves a minute. Its rate shows: errors grow with it, and cover what it does."""
+    record = swept(*way, 100.0, octaves)
+    rate = "octaves = 1.2" if octaves else "rate = 0.06"
+    settings = BASE + f"[sweep]\nkind = 'slow'\n{rate}\n"
+    columns = {"time__s": record.time, "force__N": record.force, "position__m": record.displacement}
+    (curve,), _, _ = found(written(tmp_path, settings, **columns))
+    assert curve.frequency.size > 30 and f"# direction: {'down' if octaves else 'up'}" in head(
+        tmp_path / "out" / "frf.csv"
+    )
+    error = np.abs(curve.H / [LINEAR.receptance(f) for f in curve.frequency] - 1)
+    settled = slice(3, None)  # it starts from rest
+    assert curve.error is not None
+    assert np.mean(error[settled] < 1.96 * np.linalg.norm(curve.error, axis=1)[settled]) > 0.9
+    assert np.median(error[settled]) < 0.01 and np.median(curve.error[settled]) < 0.01
+    wrong = written(tmp_path, settings.replace("1.2", "0.6").replace("0.06", "0.03"), **columns)
+    status, _, err = in_process("recordings", wrong, "--output", tmp_path / "other")
+    assert status == 1
+    assert re.search(r"the sweep goes by -?(0\.06|1\.2)\d* .*, the settings say 0\.(03|6)", err), err
 
 
 def as_record(shaker: Shaken, displacement: np.ndarray, force: np.ndarray, steps=(0.0, 0.0)) -> Record:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from scipy.signal import lsim
 
 from commands import in_process
 from linear import PUBLISHED, LinearPantograph
@@ -107,3 +108,25 @@ def assert_linear(curves: list[Curve], frequencies, tolerance: float = 1e-6) -> 
     H = np.concatenate([curve.H for curve in curves])
     np.testing.assert_allclose(frequency, frequencies, rtol=1e-6)
     np.testing.assert_allclose(H, [LINEAR.receptance(f) for f in frequencies], rtol=tolerance)
+
+
+def swept(first: float, last: float, duration: float, octaves: bool = False, rate: float = 200.0) -> Shaken:
+    """A slow sweep from one frequency to another (Hz) in s at 1 m/s2, from rest; in even Hz/s or octaves.
+
+    The masses below the head by SciPy's solution of linear systems, with eight steps in a value.
+    """
+    step, fine = 1 / (8 * rate), np.arange(round(8 * rate * duration)) / (8 * rate)
+    growth = np.log(last / first) / duration
+    linear = (last - first) / duration
+    frequency = first * np.exp(growth * fine) if octaves else first + linear * fine
+    phase = 2 * np.pi * (first * np.expm1(growth * fine) / growth if octaves else first * fine + linear * fine**2 / 2)
+    z = np.sin(phase) / (2 * np.pi * frequency) ** 2 * np.minimum(fine, 1.0) ** 2
+    m, c, k = LINEAR.matrices()
+    assert not c[0].any()  # the head has no damper
+    below = np.linalg.inv(m[1:, 1:])
+    a = np.block([[np.zeros((2, 2)), np.eye(2)], [-below @ k[1:, 1:], -below @ c[1:, 1:]]])
+    b = np.vstack([np.zeros((2, 1)), -below @ k[1:, :1]])
+    _, states, _ = lsim((a, b, np.eye(4), np.zeros((4, 1))), z, fine)
+    acceleration = np.gradient(np.gradient(z, step), step)
+    force = m[0, 0] * acceleration + k[0, 0] * z + states[:, :2] @ k[0, 1:]
+    return Shaken(rate, z[::8], STATIC_FORCE - force[::8], acceleration[::8])

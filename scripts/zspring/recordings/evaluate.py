@@ -13,7 +13,7 @@ import numpy as np
 from .points import Point
 from .settings import Settings
 from .signals import Record
-from .sine import FEWEST_PERIODS, HARMONICS, Periods, error_of_mean, errors_of_means, harmonics_within
+from .sine import FEWEST_PERIODS, HARMONICS, Periods, error_of_mean, errors_of_means, harmonics_within, without_trend
 from .steady import repeats_after, settled, undisturbed, usual
 from .track import Stretch
 from .window import Window, located
@@ -23,8 +23,11 @@ AUDIBLE = 4.0  # standard errors from which on a harmonic is more than noise
 HUNTING = 0.02  # relative scatter of the motion's amplitude
 
 
-def evaluate(record: Record, hold: Stretch, settings: Settings) -> Point:
-    """The point of a hold, or why there is none."""
+def evaluate(record: Record, hold: Stretch, settings: Settings, swept: bool = False) -> Point:
+    """The point of a hold, or why there is none.
+
+    swept   H changes evenly along it
+    """
     point = Point(record.path.name, record.level, hold.begin, hold.end, hold.frequency, 0)
     harmonics = harmonics_within(record.rate, hold.frequency)
     if harmonics < 1:
@@ -35,15 +38,15 @@ def evaluate(record: Record, hold: Stretch, settings: Settings) -> Point:
     count = moved.residual.size
     point = replace(point, frequency=window.frequency, found=count)
     good = undisturbed(force, record.force.step) & undisturbed(moved, motion.step) & usual(moved.amplitude[:, 0])
-    good[: math.ceil(settings.sweep.settle)] = False
+    good[: 0 if swept else math.ceil(settings.sweep.settle)] = False
     kept = np.flatnonzero(good)
-    skipped, change = settled(force.amplitude[kept, 0] / moved.amplitude[kept, 0])
+    skipped, change = (0, 0.0) if swept else settled(force.amplitude[kept, 0] / moved.amplitude[kept, 0])
     kept = kept[skipped:]
     for channel, found in (("force", force), (name, moved)):
         if kept.size and not np.any(np.abs(found.amplitude[kept, 0]) > 0):
             return replace(point, left_out=f"{channel} does not move")
     clipped = [channel for channel, found in (("force", force), (name, moved)) if found.clipped]
-    if kept.size < FEWEST_PERIODS:
+    if kept.size < FEWEST_PERIODS + swept:
         return replace(point, periods=kept.size, left_out=_why(kept.size, clipped, force, moved, name))
     marks = []
     if (disturbed := count - kept[0] - kept.size) > 0.1 * count:
@@ -52,7 +55,7 @@ def evaluate(record: Record, hold: Stretch, settings: Settings) -> Point:
         marks.append(f"{' and '.join(clipped)} clipped in many periods")
     if change:
         marks.append(f"not settled: H changes by {100 * change:.2g} %")
-    return _measured(point, window, settings, kept, force, moved, tuple(marks))
+    return _measured(point, window, settings, kept, force, moved, tuple(marks), swept)
 
 
 def _why(count: int, clipped: list[str], force: Periods, moved: Periods, name: str) -> str:
@@ -73,6 +76,7 @@ def _measured(
     force: Periods,
     moved: Periods,
     marks: tuple[str, ...],
+    swept: bool,
 ) -> Point:
     """The point from the periods that count."""
     record, order = window.record, window.order
@@ -109,10 +113,10 @@ def _measured(
         end=float(end),
         periods=kept.size,
         H=complex(-z / f),
-        magnitude_error=math.hypot(error_of_mean(relative.real), systematic),
-        phase_error=math.hypot(error_of_mean(relative.imag), systematic),
+        magnitude_error=math.hypot(error_of_mean(relative.real, swept), systematic),
+        phase_error=math.hypot(error_of_mean(relative.imag, swept), systematic),
         acceleration=float(abs(z) * omega**2),
-        scatter=float(np.abs(Z[:, 0]).std(ddof=1) / abs(z)),
+        scatter=float((without_trend(np.abs(Z[:, 0])) if swept else np.abs(Z[:, 0])).std(ddof=1) / abs(z)),
         force=padded(np.abs(F.mean(0))),
         force_error=padded(errors_of_means(F)),
         motion=padded(np.abs(Z.mean(0))),
@@ -122,7 +126,7 @@ def _measured(
         static_force=force.mean,
         drift=force.slope * kept.size / window.frequency,
         loss=float(loss.mean()),
-        loss_error=error_of_mean(loss),
+        loss_error=error_of_mean(loss, swept),
         agreement=agreement,
         subharmonic=repeat,
     )

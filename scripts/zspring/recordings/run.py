@@ -22,7 +22,8 @@ from .plot import harmonics_figure, hold_figure, response_figure
 from .points import Point
 from .settings import Settings
 from .signals import Record, read_record
-from .track import Stretch, Turns, holds_of, matched, turns_of
+from .slow import swept_points
+from .track import Turns, holds_of, matched, turns_of
 
 
 def run_recordings(settings: Settings, path: Path, folder: Path, suffix: str) -> None:
@@ -32,7 +33,7 @@ def run_recordings(settings: Settings, path: Path, folder: Path, suffix: str) ->
     suffix  of the figures, "png" or "svg"
     Raises ZSpringError for what cannot be read, and where no hold can be used.
     """
-    head = _head(settings, path)
+    head = _head(settings)
     keep_others(folder / "holds.csv", head)
     points: list[Point] = []
     shown: tuple[Record, Point] | None = None
@@ -71,17 +72,17 @@ def run_recordings(settings: Settings, path: Path, folder: Path, suffix: str) ->
 def holds_in(record: Record, settings: Settings) -> tuple[list[Point], list[str]]:
     """The points of a file, and what to say of it. Raises ZSpringError where it has no steady part."""
     name, motion = next(iter(record.motions.items()))
-    holds: list[Stretch] = []
-    noise = []
+    parts: list[Turns] = []
     for first, last in record.parts:
         values = _filled(motion.values[first:last])
         driven = values if name == "acceleration" or values.size < 2 else np.gradient(values) * record.rate
-        turns: Turns = turns_of(float(record.time[first]), record.rate, driven, settings.sweep.band)
-        noise.append(float(np.median(turns.noise)) if turns.noise.size else np.inf)
-        holds += holds_of(turns)
+        parts.append(turns_of(float(record.time[first]), record.rate, driven, settings.sweep.band))
+    if settings.sweep.kind == "slow":
+        return swept_points(record, parts, settings), []
     low, high = settings.sweep.band
-    holds = [hold for hold in holds if low <= hold.frequency <= high]
+    holds = [hold for turns in parts for hold in holds_of(turns) if low <= hold.frequency <= high]
     if not holds:
+        noise = [float(np.median(turns.noise)) if turns.noise.size else np.inf for turns in parts]
         text = f"{record.path}: no steady part: no {low:g} to {high:g} Hz held in {name}"
         why = "is it a slow sweep?" if min(noise) < 0.02 else f"its turns scatter by {100 * min(noise):.0f} %"
         raise ZSpringError(f"{text}; {why}")
@@ -108,16 +109,15 @@ def _write_responses(folder: Path, head: dict[str, str], groups: Sequence[Group]
     return paths
 
 
-def _head(settings: Settings, path: Path) -> dict[str, str]:
+def _head(settings: Settings) -> dict[str, str]:
     """All that defines the numbers."""
-    files = [path, *(file.path for file in settings.recording)]
+    paths = [file.path for file in settings.recording]
     head = {
         "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
         "to read it": 'force = "specimen", fixture_mass = 0: signs and fixture are accounted for',
         "errors": "standard errors, +- 1.96 of which is a 95 % interval",
-        **{
-            f"SHA-256 of {file.name}": hashlib.sha256(file.read_bytes()).hexdigest() for file in files if file.is_file()
-        },
+        **{f"setting {key}": repr(value) for key, value in settings if key != "recording"},
+        **{f"file {i}": f"{hashlib.sha256(path.read_bytes()).hexdigest()} {path}" for i, path in enumerate(paths, 1)},
     }
     if settings.static_force is not None:
         head["static_force"] = f"{settings.static_force:g} N"

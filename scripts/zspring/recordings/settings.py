@@ -111,6 +111,7 @@ class Sweep(Table):
     frequencies: Frequencies | None = Field(default=None, description="Hz, of the holds; None: all that are found")
     band: Band = (0.3, 40.0)
     settle: float = Field(default=2.0, ge=0, description="periods at the begin of a hold to leave out at least")
+    periods: int = Field(default=10, ge=6, description="for each point of a slow sweep")
     rate: Positive | None = Field(default=None, description="Hz/s, of a slow sweep")
     octaves: Positive | None = Field(default=None, description="octaves a minute, of a slow one that is logarithmic")
 

@@ -97,8 +97,10 @@ def by_period(time: np.ndarray, values: np.ndarray, frequency: float, harmonics:
     return Periods(amplitude, residual, mean, slope)
 
 
-def error_of_mean(values: np.ndarray) -> float:
+def error_of_mean(values: np.ndarray, trend: bool = False) -> float:
     """Standard error of the mean of values (M,) in the order of time, which may hang together.
+
+    trend   take off a straight line: it is no noise
 
     From the slowest B cosine transforms, equally weighted (Lazarus, Lewis, Stock, Watson 2018): the noise near the
     frequency itself counts, not that of the whole period. With B = M - 1 it is the scatter's usual formula. B numbers
@@ -109,11 +111,18 @@ def error_of_mean(values: np.ndarray) -> float:
     from scipy.fft import dct  # slow to load
 
     count = values.size
-    if count < FEWEST_PERIODS:
+    if count < FEWEST_PERIODS + trend:
         return math.nan
-    told = min(count - 1, max(6, round(count ** (2 / 3) / 1.5)))
-    slowest = dct(values, type=2, norm="ortho")[1 : told + 1]
+    values = without_trend(values) if trend else values
+    told = min(count - 1 - trend, max(6, round(count ** (2 / 3) / 1.5)))
+    slowest = dct(values, type=2, norm="ortho")[1 + trend : told + 1 + trend]
     return float(math.sqrt(np.mean(slowest**2) / count * told / (told - 2)))
+
+
+def without_trend(values: np.ndarray) -> np.ndarray:
+    """Values (M,) without the straight line through them, but with their mean."""
+    place = np.arange(values.size) - (values.size - 1) / 2
+    return values - place * (place @ values) / (place @ place)
 
 
 def errors_of_means(amplitudes: np.ndarray) -> np.ndarray:
