@@ -12,7 +12,9 @@ import pytest
 from commands import head, in_process, table
 from paths import ROOT
 from shaker import BASE, FOUR, LINEAR, STATIC_FORCE, Shaken, assert_linear, found, shaken, swept, write_text, written
+from zspring.bench.curves import Source
 from zspring.bench.fmu_bench import FmuBench
+from zspring.bench.measured import read_curves
 from zspring.fmu import Fmu
 from zspring.recordings.evaluate import evaluate
 from zspring.recordings.example import recorded
@@ -90,6 +92,43 @@ def test_harmonics_beyond_the_sampling_rate_are_not_told(tmp_path):
     rows = table(tmp_path / "out" / "frf.csv")
     assert [rows[1][f"harmonic_{k} [N]"] != "" for k in range(2, 8)] == [True, True, False, False, False, False]
     assert rows[0]["harmonic_5 [N]"] != ""
+
+
+def test_up_and_down_have_files_of_their_own_and_universal_ones(tmp_path):
+    """Two levels up and down in one file; the universal file says what the other does."""
+    both = (*FOUR, 5.2, 3.3, 2.0)
+    records = [shaken(both, acceleration=level) for level in (0.5, 2.0)]
+    force, position = (np.concatenate([getattr(r, name) for r in records]) for name in ("force", "displacement"))
+    settings = written(tmp_path, BASE, time__s=np.arange(force.size) / 500, force__N=force, position__m=position)
+    status, out, err = in_process("recordings", settings, "--uff", "--output", tmp_path / "out")
+    assert status == 0, err
+    assert out.count("up and down: 3 frequencies, 0 of them beyond 3 standard errors") == 2
+    for way, frequencies in (("up", both[:4]), ("down", both[4:])):
+        curves = read_curves(Source(tmp_path / "out" / f"frf-{way}.csv"))
+        assert [curve.label for curve in curves] == ["0.5 m/s2", "2 m/s2"]
+        for curve, universal in zip(curves, read_curves(Source(tmp_path / "out" / f"frf-{way}.uff"))):
+            assert_linear([curve], frequencies)
+            rising = np.argsort(curve.frequency)
+            np.testing.assert_allclose(universal.frequency, curve.frequency[rising], rtol=1e-5)
+            np.testing.assert_allclose(universal.H, curve.H[rising], rtol=1e-5)
+            np.testing.assert_allclose(universal.acceleration, np.median(curve.acceleration), rtol=1e-4)
+
+
+@pytest.mark.parametrize("periods", [2, 3, 4])
+def test_a_force_that_repeats_only_after_several_periods_is_told(tmp_path, periods):
+    """3 % of the force at a part of the frequency, in noise; H is that of the rest."""
+    settings = read_settings(written(tmp_path, BASE))
+    record = shaken([5.2], periods=40)
+    peak = np.ptp(record.force) / 2
+    slow = 0.03 * peak * np.sin(2 * np.pi * 5.2 / periods * record.time + 1)
+    noise = 0.02 * peak * np.random.default_rng(periods).standard_normal(slow.size)
+    stretch = Stretch(0.0, record.time[-1], 5.2, 1.0)
+    point = evaluate(as_record(record, record.displacement, record.force + noise + slow), stretch, settings)
+    assert point.subharmonic == periods
+    assert point.status == f"marked: the force repeats only after {periods} periods (3.0 % of the fundamental)"
+    assert abs(point.H / LINEAR.receptance(5.2) - 1) < 3 * max(point.magnitude_error, point.phase_error)
+    alone = evaluate(as_record(record, record.displacement, record.force + noise), stretch, settings)
+    assert alone.subharmonic == 1 and alone.status == "used"
 
 
 @pytest.mark.parametrize("octaves, way", [(False, (2.0, 8.0)), (True, (8.0, 2.0))])

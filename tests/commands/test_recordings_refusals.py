@@ -120,3 +120,37 @@ def test_results_of_other_settings_are_kept(tmp_path):
     settings = written(tmp_path, BASE.replace("90", "91"))
     status, _, err = in_process("recordings", settings, "--output", tmp_path / "out")
     assert status == 1 and "is of other settings" in err
+
+
+def test_displacement_and_acceleration_check_each_other(tmp_path):
+    """An accelerometer that is 3 % off and 4 ms late is told; which of both H is of has to be said."""
+    both = BASE + '[acceleration]\nchannel = "sensor"\npositive = "up"\n'
+    late = shaken(FOUR, late=0.0)
+    record = changed(sensor__g=1.03 / 9.80665 * np.roll(late.acceleration, 2))
+    status, _, err = in_process("recordings", written(tmp_path, both, **record), "--output", tmp_path / "out")
+    assert status == 1 and 'motion is missing: "displacement" or "acceleration", of which H is' in err
+    curves, _, err = found(written(tmp_path, 'motion = "displacement"\n' + both, **record))
+    assert_linear(curves, FOUR)
+    told = re.findall(r"([\d.]+) Hz: marked: displacement from acceleration off by \+3.0 %, (-[\d.]+) deg", err)
+    assert [float(f) for f, _ in told] == list(FOUR)
+    np.testing.assert_allclose([float(turn) for _, turn in told], [-360 * f * 0.004 for f in FOUR], atol=0.06)
+
+
+def test_doubts_about_the_bench_are_told(tmp_path):
+    """No static force; another one than the load cell has; energy that comes out; holds that miss or are not wanted."""
+    without = BASE.replace("static_force = 90\n", "")
+    _, _, err = found(written(tmp_path / "", without, **COLUMNS))
+    assert err == "static_force is not given: identify needs it, and what it finds depends on it\n"
+    (tmp_path / "b").mkdir()
+    _, _, err = found(written(tmp_path / "b", BASE.replace("90", "120"), **COLUMNS))
+    assert err == "the force has a mean of 90 N, static_force is 120 N: is its zero right?\n"
+    (tmp_path / "c").mkdir()
+    swapped = changed(force__N=180 - RECORD.force)
+    _, _, err = found(written(tmp_path / "c", BASE, **swapped))
+    assert "at 4 of 4 points the receptance has a positive imaginary part" in err and '[force] sense = "contact"' in err
+    (tmp_path / "d").mkdir()
+    some = BASE + "[sweep]\nfrequencies = [2.0, 3.3, 4.0, 9.1]\n"
+    curves, _, err = found(written(tmp_path / "d", some, **COLUMNS))
+    assert_linear(curves, (2.0, 3.3, 9.1))
+    assert "a.csv: no hold at 4 Hz" in err
+    assert re.search(r"5.2 Hz: left out: not in the list of frequencies", err)

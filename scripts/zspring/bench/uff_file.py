@@ -1,10 +1,10 @@
-"""Data sets of universal files, by pyuff, from files as people have them."""
+"""Data sets of universal files, by pyuff: from files as people have them, and of responses to write."""
 
 from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ZSpringError, missing_extra
+from .curves import Curve
 
 FUNCTION, UNITS = 58, 164  # types of data sets
 
@@ -44,10 +45,7 @@ class UniversalFile:
     """
 
     def __init__(self, path: Path):
-        try:
-            import pyuff
-        except ImportError:
-            raise missing_extra(["pyuff"], "uff") from None
+        pyuff = pyuff_package()
         content = path.read_bytes()
         marks = len(_MARK.findall(content))
         if not marks:
@@ -85,6 +83,49 @@ class UniversalFile:
 
     def __exit__(self, *_) -> None:
         self._folder.cleanup()
+
+
+def write_responses(path: Path, title: str, curves: Sequence[Curve]) -> Path:
+    """A universal file with driving-point receptances in m/N, one data set 58 for each curve.
+
+    The Z axis has the median of its amplitudes. Raises ZSpringError for a missing package.
+    """
+    pyuff = pyuff_package()
+    sets = []
+    for curve in curves:
+        order = np.argsort(curve.frequency)
+        fields = pyuff.prepare_58(
+            func_type=4,
+            x=curve.frequency[order],
+            data=curve.H[order],
+            id1=title[:80],
+            id2=curve.label[:80],
+            **{f"{which}_{what}": value for which in ("rsp", "ref") for what, value in (("node", 1), ("dir", 3))},
+            binary=0,
+            ord_data_type=6,  # complex, double
+            abscissa_spacing=0,  # each frequency as it was
+            abscissa_spec_data_type=18,
+            abscissa_axis_units_lab="Hz",
+            ordinate_spec_data_type=8,
+            ordinate_axis_units_lab="m",
+            orddenom_spec_data_type=13,
+            orddenom_axis_units_lab="N",
+            z_axis_spec_data_type=12,
+            z_axis_axis_units_lab="m/s2",
+            z_axis_value=float(np.median(curve.acceleration)),
+        )
+        sets.append({**fields, "type": FUNCTION})
+    pyuff.UFF(str(path)).write_sets(sets, mode="overwrite")
+    return path
+
+
+def pyuff_package() -> Any:
+    """The package pyuff. Raises ZSpringError where it is missing."""
+    try:
+        import pyuff
+    except ImportError:
+        raise missing_extra(["pyuff"], "uff") from None
+    return pyuff
 
 
 def _readable(content: bytes) -> bytes:

@@ -18,9 +18,10 @@ from ..records import claimed
     metavar="DIR",
     help="Only write an example into this folder: virtual recordings of the FMU, and settings that explain themselves.",
 )
+@click.option("--uff", is_flag=True, help="Write the responses as a universal file (data sets 58), too.")
 @output_option(described="results/recordings-SETTINGS")
 @format_option
-def recordings(settings_path, example, output, suffix) -> None:
+def recordings(settings_path, example, uff, output, suffix) -> None:
     """Make frequency responses from time records of a shaker bench.
 
     SETTINGS.toml names the files and their channels: force, and displacement or acceleration, with units, signs and
@@ -44,4 +45,4 @@ def recordings(settings_path, example, output, suffix) -> None:
     settings = read_settings(settings_path)
     folder = output or Path("results") / f"recordings-{settings_path.stem}"
     with claimed(folder):
-        run_recordings(settings, settings_path, folder, suffix)
+        run_recordings(settings, settings_path, folder, suffix, uff)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..bench.curves import Curve
 from ..bench.levels import levels_of
+from ..errors import ZSpringError
 from .points import Point
 
 SAME = 0.002  # relative distance of frequencies that are one
+NEAR = 0.01  # relative distance of a frequency from one that was asked for
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,23 @@ class Group:
             np.array([getattr(p, name) for p in self.points]) for name in ("frequency", "acceleration", "H")
         )
         return Curve(self.label, frequency, acceleration, H)
+
+
+def asked_for(points: Sequence[Point], frequencies: Sequence[float], where: str) -> tuple[list[Point], list[str]]:
+    """The points, those left out that are at none of the frequencies (Hz), and a line for each that has none.
+
+    At a frequency is what is within NEAR of it, or half way to the next. Raises ZSpringError where nothing is.
+    """
+    wanted = np.sort(frequencies)
+    within = np.minimum(NEAR * wanted, np.min(np.diff(wanted), initial=np.inf) / 2)
+    places = [int(np.argmin(np.abs(wanted - point.frequency))) for point in points]
+    there = [abs(wanted[i] - point.frequency) <= within[i] for point, i in zip(points, places)]
+    if not any(there):
+        raise ZSpringError(f"{where}: no hold at any of the frequencies of the settings")
+    other = "not in the list of frequencies"
+    kept = [point if is_there else replace(point, left_out=other) for point, is_there in zip(points, there)]
+    found = {i for i, is_there in zip(places, there) if is_there}
+    return kept, [f"{where}: no hold at {f:g} Hz" for i, f in enumerate(wanted) if i not in found]
 
 
 def grouped(points: Sequence[Point], direction: str | None) -> list[Group]:

@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from ..bench.uff_file import pyuff_package
+from ..bench.uff_file import write_responses as write_universal
 from ..errors import ZSpringError, tell
 from ..figures import save
 from ..records import keep_others
@@ -17,22 +19,25 @@ from . import report
 from .cycle import cycle_of
 from .evaluate import evaluate
 from .files import write_holds, write_responses
-from .groups import Group, grouped
+from .groups import Group, asked_for, grouped
 from .plot import harmonics_figure, hold_figure, response_figure
 from .points import Point
 from .settings import Settings
 from .signals import Record, read_record
 from .slow import swept_points
-from .track import Turns, holds_of, matched, turns_of
+from .track import Turns, holds_of, turns_of
 
 
-def run_recordings(settings: Settings, path: Path, folder: Path, suffix: str) -> None:
+def run_recordings(settings: Settings, path: Path, folder: Path, suffix: str, uff: bool) -> None:
     """Read, evaluate, write and print.
 
     path    of the settings
     suffix  of the figures, "png" or "svg"
+    uff     write universal files, too
     Raises ZSpringError for what cannot be read, and where no hold can be used.
     """
+    if uff:
+        pyuff_package()
     head = _head(settings)
     keep_others(folder / "holds.csv", head)
     points: list[Point] = []
@@ -56,8 +61,8 @@ def run_recordings(settings: Settings, path: Path, folder: Path, suffix: str) ->
         print(line)
     for line in report.remarks(groups, settings.static_force):
         print(line, file=sys.stderr)
-    paths += _write_responses(folder, head, groups)
     title = f"Measured response, {path.stem}"
+    paths += _write_responses(folder, head, groups, title, uff)
     figures = {
         "frf": response_figure(groups, title),
         "harmonics": harmonics_figure(groups, title),
@@ -86,10 +91,10 @@ def holds_in(record: Record, settings: Settings) -> tuple[list[Point], list[str]
         text = f"{record.path}: no steady part: no {low:g} to {high:g} Hz held in {name}"
         why = "is it a slow sweep?" if min(noise) < 0.02 else f"its turns scatter by {100 * min(noise):.0f} %"
         raise ZSpringError(f"{text}; {why}")
-    said: list[str] = []
+    points = [evaluate(record, hold, settings) for hold in holds]
     if settings.sweep.frequencies:
-        holds, said = matched(holds, settings.sweep.frequencies, record.path.name)
-    return [evaluate(record, hold, settings) for hold in holds], said
+        return asked_for(points, settings.sweep.frequencies, record.path.name)
+    return points, []
 
 
 def _filled(values: np.ndarray) -> np.ndarray:
@@ -98,14 +103,17 @@ def _filled(values: np.ndarray) -> np.ndarray:
     return values if there.all() else np.interp(np.arange(values.size), np.flatnonzero(there), values[there])
 
 
-def _write_responses(folder: Path, head: dict[str, str], groups: Sequence[Group]) -> list[Path]:
+def _write_responses(folder: Path, head: dict[str, str], groups: Sequence[Group], title: str, uff: bool) -> list[Path]:
     """One file, or one for each direction."""
     ways = list(dict.fromkeys(group.direction for group in groups))
     paths = []
     for way in ways:
         own = [group for group in groups if group.direction == way]
-        name = f"frf-{way or 'file-order'}.csv" if len(ways) > 1 else "frf.csv"
-        paths.append(write_responses(folder / name, {**head, **({"direction": way} if way else {})}, own))
+        name = f"frf-{way or 'file-order'}" if len(ways) > 1 else "frf"
+        about = {**head, **({"direction": way} if way else {})}
+        paths.append(write_responses(folder / f"{name}.csv", about, own))
+        if uff:
+            paths.append(write_universal(folder / f"{name}.uff", title, [group.curve for group in own]))
     return paths
 
 

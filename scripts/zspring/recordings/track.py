@@ -11,8 +11,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import ZSpringError
-
 FEWEST_TURNS = 6  # of a hold
 OUTLYING = 5.0  # standard deviations
 APART = 0.02  # of a turn, from the line through all so far: where noise leaves it, the frequency is another
@@ -138,24 +136,3 @@ def _joined(holds: Sequence[Stretch]) -> list[Stretch]:
                 continue
         joined.append(hold)
     return joined
-
-
-def matched(holds: Sequence[Stretch], frequencies: Sequence[float], where: str) -> tuple[list[Stretch], list[str]]:
-    """Those holds that are at one of these frequencies (Hz), within 1 % or half way to the next, and what is missing.
-
-    Raises ZSpringError where there is none.
-    """
-    wanted = np.sort(frequencies)
-    within = np.minimum(0.01 * wanted, np.min(np.diff(wanted), initial=np.inf) / 2)
-    place = [int(np.argmin(np.abs(wanted - hold.frequency))) for hold in holds]
-    kept = [hold for hold, i in zip(holds, place) if abs(wanted[i] - hold.frequency) <= within[i]]
-    there = {i for hold, i in zip(holds, place) if hold in kept}
-    if not kept:
-        raise ZSpringError(f"{where}: no hold at any of the frequencies of the settings")
-    missing = [f"{where}: no hold at {f:g} Hz" for i, f in enumerate(wanted) if i not in there]
-    missing += [
-        f"{where}: the hold at {hold.frequency:.4g} Hz, {hold.begin:.1f} s, is not in the list of frequencies"
-        for hold in holds
-        if hold not in kept
-    ]
-    return kept, missing
