@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from .errors import ZSpringError
 from .fmu import Fmu
 from .tables import read_table, write_table
 from .variables import Value
+
+SHARE = 0.95  # of the draws, in an interval
 
 
 def write_draws(
@@ -40,3 +44,8 @@ def read_draws(path: Path, fmu: Fmu, but_not: Sequence[str] = ()) -> list[dict[s
     if not table.lines:
         raise ZSpringError(f"{path}: has no draw")
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
+
+
+def quantiles(values: np.ndarray) -> np.ndarray:
+    """Lower end of the interval, median and upper end (3, ...) of values (draws, ...)."""
+    return np.quantile(values, [(1 - SHARE) / 2, 0.5, (1 + SHARE) / 2], axis=0)

@@ -147,6 +147,12 @@ line_option = option(
 )
 
 
+def draws_option(what: str):
+    """--draws FILE: `what` is done for each of them."""
+    text = f"Draws of the pantograph's parameters, as `zspring identify` leaves them: {what} for each, with intervals."
+    return option("--draws", "draws_path", kind=FILE, metavar="FILE", help=text)
+
+
 def data_sets_option(name: str):
     """Which data sets of a universal file to read."""
     text = "Of a universal file, where nodes and directions do not tell the driving point, e.g. 1,3."

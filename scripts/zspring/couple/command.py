@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from ..draws import read_draws
 from ..errors import ZSpringError
 from ..fmu import CATENARY, installed_fmu
 from ..line.journey import MASSES, START_UPS, Journey
@@ -16,6 +17,7 @@ from ..options import (
     Spans,
     choice,
     chosen_parameters,
+    draws_option,
     format_option,
     line_fmu_option,
     line_option,
@@ -91,6 +93,7 @@ SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameter
 )
 @option("--step", default=1e-3, metavar="H", help="Communication step in s.")
 @option("--tolerance", default=Coupling.tolerance, help="Of the contact force, implicit, as a share of static_force.")
+@draws_option("the run")
 @click.option("--compare-steps", is_flag=True, help="Tell what the coupling costs at 0.5, 1, 2 and 5 ms.")
 @option(
     "--ssp",
@@ -111,6 +114,7 @@ def couple(pantograph, output, suffix, **given) -> None:
     After Ctrl-C the rows so far are kept.
     """
     from . import run  # matplotlib is slow to load
+    from .draws import run_draws
 
     speed, uplift, supply, ssp_path = (given[name] for name in ("speed", "uplift", "supply", "ssp_path"))
     if uplift is not None and supply:
@@ -143,5 +147,9 @@ def couple(pantograph, output, suffix, **given) -> None:
         with claimed(output):
             if given["compare_steps"]:
                 run.compare_and_write(run.aimed(system, aim) if aim else system, output, suffix, what)
+            elif given["draws_path"]:
+                draws = read_draws(given["draws_path"], fmu, ("drive",))
+                aimed = run.aimed(system, aim) if aim else system
+                run_draws(aimed, draws, given["draws_path"], output, suffix, spans, what)
             else:
                 run.run_and_write(system, output, suffix, given["parquet"], aim, spans, what)

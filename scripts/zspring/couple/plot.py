@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from ..figures import legend_beside, new_figure
 from ..line.result import SLIPPING, LineResult
+from ..line.statistics import FIGURES, Statistics
 from .compare import Comparison
 
 COLOURS = ("tab:blue", "tab:orange")
@@ -111,4 +112,25 @@ def comparison_figure(rows: Sequence[Comparison], title: str) -> Figure:
     axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
     axes.legend(fontsize=8)
     axes.set_title(title)
+    return figure
+
+
+def draws_figure(drawn: Mapping[str, tuple[Statistics, Mapping[str, np.ndarray]]], title: str) -> Figure:
+    """Histograms of figures over draws, by pantograph, with those of the parameters as given."""
+    names = list(next(iter(drawn.values()))[1])
+    rows = -(-len(names) // 2)
+    figure = new_figure(9, 1.9 * rows + 0.8)
+    figure.suptitle(title, fontsize=10)
+    grid = figure.subplots(rows, 2).ravel()
+    for axes, name in zip(grid, names):
+        for color, (pantograph, (given, values)) in zip(COLOURS, drawn.items()):
+            axes.hist(values[name], bins="auto", color=color, alpha=0.6, label=pantograph)
+            axes.axvline(given[name], color=color, linewidth=1.2, linestyle="--")
+        label, unit, _ = FIGURES[name]
+        axes.set_xlabel(f"{label}  [{unit or 1}]", fontsize=8)
+        axes.tick_params(labelsize=7)
+        axes.set_yticks([])
+    for axes in grid[len(names) :]:
+        axes.set_axis_off()
+    grid[0].legend(fontsize=7, title="dashed: as given", title_fontsize=7)
     return figure

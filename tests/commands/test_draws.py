@@ -1,0 +1,68 @@
+"""What commands make of draws of the pantograph's parameters."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from commands import start, table, zspring
+
+COUPLE = ["--set-line", "line.spans=4", "--stop", "200", "--step", "0.002"]
+
+
+def draws(path: Path, *static_forces: float) -> str:
+    path.write_text("static_force [N],k1 [N/m]\n" + "".join(f"{force},9430\n" for force in static_forces))
+    return path.name
+
+
+def test_a_line_is_run_for_each_draw(tmp_path):
+    """Each row is that of a run of its own with these parameters; the interval is that of the rows."""
+    forces = [100.0, 110.0, 120.0, 130.0, 140.0]
+    linear = ["--set", "suspension=Linear", *COUPLE]
+    out, _ = zspring(tmp_path, "couple", *linear, "--draws", draws(tmp_path / "d.csv", *forces), "--output", "all")
+    rows = table(tmp_path / "all/draws.csv")
+    assert [(row["draw"], row["pantograph"]) for row in rows] == [(f"{i}", "1") for i in range(6)]
+    alone, _ = zspring(tmp_path, "couple", *linear, "--set", "static_force=140", "--output", "one")
+    mean = [float(row["mean_force [N]"]) for row in rows]
+    assert f"{mean[5]:.1f}" == re.search(r"mean force +(\S+)", alone)[1]
+    assert mean[0] == mean[3]  # as given is 120 N
+    np.testing.assert_allclose(np.diff(mean[1:]), 10, rtol=0.02)
+    found = re.search(r"mean force +(\S+) +(\S+) \.\. (\S+) +(\S+) +N", out)
+    low, high = np.quantile(mean[1:], [0.025, 0.975])
+    assert found.groups() == (f"{mean[0]:.1f}", f"{low:.1f}", f"{high:.1f}", f"{high - low:.2g}")
+    assert "5 draws of d.csv" in out and (tmp_path / "all/draws.png").exists()
+
+
+def test_runs_of_draws_go_on_after_an_interruption(tmp_path):
+    name = draws(tmp_path / "d.csv", *range(100, 140))
+    options = ["couple", *COUPLE, "--draws", name, "--output", "broken"]
+    process = start(tmp_path, *options)
+    record = tmp_path / "broken/draws.csv"
+    while not (record.exists() and len(table(record)) > 2):
+        assert process.poll() is None
+    os.kill(process.pid, signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130 and "the same command goes on from there" in err
+    kept = len(table(record))
+    assert 2 < kept < 41
+    draws(tmp_path / "d.csv", 100)
+    _, err = zspring(tmp_path, *options, status=1)
+    assert "is of other settings (draws" in err
+    draws(tmp_path / "d.csv", *range(100, 140))
+    out, _ = zspring(tmp_path, *options)
+    assert f"going on after {kept} of 41" in out and len(table(record)) == 41
+
+
+@pytest.mark.parametrize(
+    "text, complaint",
+    [("drive [1]\n2\n", "d.csv: drive: must be a Real parameter"), ("m1 [kg]\n-1\n", "m1 = -1 kg: must be at least")],
+)
+def test_draws_that_cannot_be_run_are_refused(tmp_path, text, complaint):
+    (tmp_path / "d.csv").write_text(text)
+    _, err = zspring(tmp_path, "couple", *COUPLE, "--draws", "d.csv", status=1)
+    assert complaint in err and len(err.strip().splitlines()) == 1
