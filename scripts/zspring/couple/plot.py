@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from ..figures import legend_beside, new_figure
 from ..line.result import SLIPPING, LineResult
@@ -116,8 +117,9 @@ def comparison_figure(rows: Sequence[Comparison], title: str) -> Figure:
 
 
 def draws_figure(drawn: Mapping[str, tuple[Statistics, Mapping[str, np.ndarray]]], title: str) -> Figure:
-    """Histograms of figures over draws, by pantograph, with those of the parameters as given."""
-    names = list(next(iter(drawn.values()))[1])
+    """Histograms of figures over draws, by pantograph, with those of the parameters as given; of those that differ."""
+    first = next(iter(drawn.values()))[1]
+    names = [name for name in first if any(np.ptp(values[name]) > 0 for _, values in drawn.values())] or list(first)
     rows = -(-len(names) // 2)
     figure = new_figure(9, 1.9 * rows + 0.8)
     figure.suptitle(title, fontsize=10)
@@ -129,6 +131,8 @@ def draws_figure(drawn: Mapping[str, tuple[Statistics, Mapping[str, np.ndarray]]
         label, unit, _ = FIGURES[name]
         axes.set_xlabel(f"{label}  [{unit or 1}]", fontsize=8)
         axes.tick_params(labelsize=7)
+        axes.xaxis.set_major_locator(MaxNLocator(4))
+        axes.ticklabel_format(axis="x", useOffset=False)
         axes.set_yticks([])
     for axes in grid[len(names) :]:
         axes.set_axis_off()
