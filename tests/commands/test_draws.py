@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from commands import start, table, zspring
+from linear import PUBLISHED, LinearPantograph
 
 COUPLE = ["--set-line", "line.spans=4", "--stop", "200", "--step", "0.002"]
 
@@ -66,3 +67,36 @@ def test_draws_that_cannot_be_run_are_refused(tmp_path, text, complaint):
     (tmp_path / "d.csv").write_text(text)
     _, err = zspring(tmp_path, "couple", *COUPLE, "--draws", "d.csv", status=1)
     assert complaint in err and len(err.strip().splitlines()) == 1
+
+
+def test_bands_of_a_linear_suspension_are_quantiles_of_its_receptance(tmp_path):
+    """Of three masses with springs in a row, whose matrix is inverted here."""
+    stiffness = np.linspace(9000.0, 10000.0, 9)
+    (tmp_path / "d.csv").write_text("k1 [N/m]\n" + "\n".join(map(str, stiffness)) + "\n")
+    options = ["--set", "suspension=Linear", "--set", "solver.step=1e-4", "--amplitudes", "1,2", "--frequencies", "3,5"]
+    out, _ = zspring(tmp_path, "frf", *options, "--tolerance", "1e-4", "--draws", "d.csv", "--output", "bands")
+    rows = table(tmp_path / "bands/bands.csv")
+    assert [(row["level"], row["frequency [Hz]"]) for row in rows] == [
+        (level, f) for level in ("1 m/s2", "2 m/s2") for f in ("3", "5")
+    ]
+    values = {name: value for name, value in PUBLISHED["DSA-380"].items() if name != "k1"}
+    for row in rows:
+        f = float(row["frequency [Hz]"])
+        H = np.array([LinearPantograph(head=k, **values).receptance(f) for k in [9430.0, *stiffness]])
+        magnitude = np.quantile(np.abs(H[1:]), [0.025, 0.5, 0.975])
+        found = [float(row[f"magnitude_{part} [m/N]"]) for part in ("low", "median", "high")]
+        np.testing.assert_allclose(found, magnitude, rtol=1e-3)
+        assert float(row["magnitude [m/N]"]) == pytest.approx(abs(H[0]), rel=1e-3)
+        phase = np.degrees(np.angle(H[1:]))
+        assert float(row["phase_median [deg]"]) == pytest.approx(np.median(phase), abs=0.05)
+    half = 50 * (magnitude[2] - magnitude[0]) / magnitude[1]
+    assert f"±{half:.2g} % at 5 Hz" in out or "at 3 Hz" in out
+    assert sorted(path.name for path in (tmp_path / "bands").iterdir()) == ["bands.csv", "bands.png"]
+
+
+@pytest.mark.parametrize(
+    "other", [["--error-estimate"], ["--direction", "both"], ["--control", "force", "--levels", "9"]]
+)
+def test_bands_have_no_other_course(tmp_path, other):
+    _, err = zspring(tmp_path, "frf", "--draws", draws(tmp_path / "d.csv", 100), *other, status=2)
+    assert "Invalid value for --draws: has no" in err

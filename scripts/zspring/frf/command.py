@@ -10,11 +10,13 @@ from ..bench.measure import BENCH_PARAMETERS, BENCHES
 from ..bench.points import FrfSettings
 from ..bench.responses import QUANTITIES
 from ..bench.steady import LOOK_PERIODS
+from ..draws import read_draws
 from ..options import (
     FILE,
     POSITIVE,
     choice,
     data_sets_option,
+    draws_option,
     format_option,
     jobs_option,
     numbers,
@@ -112,6 +114,7 @@ STANDARD = FrfSettings()
 )
 @option("--measured-amplitude", kind=POSITIVE, metavar="A", help="Its peak acceleration in m/s2, if it does not tell.")
 @data_sets_option("--measured-data-sets")
+@draws_option("only the points asked for are measured")
 @click.option("--no-extremes", is_flag=True, help="Measure these frequencies only: no search for extremes, no table.")
 @jobs_option("Sweeps at a time (amplitudes; single points from rest).")
 @format_option
@@ -124,6 +127,7 @@ def frf(
     measured_force,
     measured_amplitude,
     measured_data_sets,
+    draws_path,
     no_extremes,
     jobs,
     suffix,
@@ -152,6 +156,10 @@ def frf(
         text = f"{settings['control']}: needs --levels, in {CONTROLS[settings['control']]}"
         raise click.BadParameter(text, param_hint="--control")
     amplitudes = levels or amplitudes
+    if draws_path and (measured or error_estimate or settings["control"] == "force" or direction == "both"):
+        text = "has no --measured, --error-estimate, --control force or --direction both"
+        raise click.BadParameter(text, param_hint="--draws")
+    from .bands import run_bands
     from .overlay import amplitudes_of, stated
     from .run import Wanted, default_folder, run_frf  # matplotlib is slow to load
 
@@ -162,6 +170,12 @@ def frf(
             amplitudes = amplitudes or amplitudes_of(source)
         settings |= {"amplitudes": amplitudes or STANDARD.amplitudes, "direction": direction or STANDARD.direction}
         frf_settings = FrfSettings(parameters=parameters, **settings)
+        if draws_path:
+            draws = read_draws(draws_path, fmu, BENCH_PARAMETERS)
+            folder = output or default_folder(fmu, frf_settings).with_name("bands")
+            with claimed(folder):
+                run_bands(fmu, frf_settings, draws, draws_path, folder, quantity, suffix, jobs, pantograph.named)
+            return
         folder = output or default_folder(fmu, frf_settings)
         with claimed(folder):
             wanted = Wanted(pantograph.named, quantity, suffix, jobs, error_estimate, not no_extremes, source)

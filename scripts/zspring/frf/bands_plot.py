@@ -1,0 +1,42 @@
+"""The figure of an FRF's bands. Nothing is simulated here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..bench.responses import QUANTITIES, phase_degrees
+from ..figures import new_figure
+
+if TYPE_CHECKING:
+    from .bands import Band
+
+
+def bands_figure(bands: Sequence[Band], quantity: str, title: str) -> Figure:
+    """Magnitude, phase, and the band's half width over the median, by level."""
+    figure = new_figure(8.5, 9.0)
+    magnitude, phase, width = figure.subplots(3, 1, sharex=True, height_ratios=[2, 1, 1])
+    colors = matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(bands)))
+    for band, color in zip(bands, colors):
+        for axes, (low, _, high) in ((magnitude, band.magnitude), (phase, band.phase)):
+            axes.fill_between(band.frequency, low, high, color=color, alpha=0.35, linewidth=0)
+        label = band.label.replace("s2", "s²")
+        magnitude.plot(band.frequency, np.abs(band.given), color=color, linewidth=0.9, label=label)
+        phase.plot(band.frequency, phase_degrees(band.given, quantity), color=color, linewidth=0.9)
+        low, middle, high = band.magnitude
+        width.plot(band.frequency, 50 * (high - low) / middle, color=color, linewidth=1.0)
+    magnitude.set_yscale("log")
+    magnitude.legend(title="line: as given", title_fontsize=8, fontsize=8, ncols=2)
+    magnitude.set(title=title, ylabel=f"{quantity}, magnitude  [{QUANTITIES[quantity]}]")
+    phase.set(ylabel="phase  [deg]")
+    width.set(xlabel="frequency  [Hz]", ylabel="± half width  [%]")
+    width.set_ylim(bottom=0)
+    frequencies = np.concatenate([band.frequency for band in bands])
+    width.set_xlim(frequencies.min(), frequencies.max())
+    for axes in (magnitude, phase, width):
+        axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
+    return figure
