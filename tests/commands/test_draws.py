@@ -94,9 +94,45 @@ def test_bands_of_a_linear_suspension_are_quantiles_of_its_receptance(tmp_path):
     assert sorted(path.name for path in (tmp_path / "bands").iterdir()) == ["bands.csv", "bands.png"]
 
 
-@pytest.mark.parametrize(
-    "other", [["--error-estimate"], ["--direction", "both"], ["--control", "force", "--levels", "9"]]
-)
+OTHERS = ["--error-estimate"], ["--direction", "both"], ["--control", "force", "--levels", "9"]
+
+
+@pytest.mark.parametrize("other", OTHERS)
 def test_bands_have_no_other_course(tmp_path, other):
-    _, err = zspring(tmp_path, "frf", "--draws", draws(tmp_path / "d.csv", 100), *other, status=2)
+    _, err = zspring(tmp_path, "frf", "--draws", draws(tmp_path / "d.csv", 100), *other, status=1)
     assert "Invalid value for --draws: has no" in err
+
+
+STUDY = """design = "list"
+draws = "d.csv"
+[static]
+amplitudes = [0.01]
+"""
+
+
+def test_a_study_has_a_case_for_each_draw(tmp_path):
+    """The suspension alone is loaded: its stiffness is k1, at any static force."""
+    (tmp_path / "d.csv").write_text("static_force [kN],k1 [N/mm]\n0.1,9\n0.13,8.5\n")
+    (tmp_path / "s.toml").write_text(STUDY + '[set]\nsuspension = "Linear"\n')
+    zspring(tmp_path, "study", "s.toml", "--output", "out")
+    (path,) = (tmp_path / "out").glob("*.csv")
+    rows = table(path)
+    assert [(float(row["static_force [N]"]), float(row["k1 [N/m]"])) for row in rows] == [(100, 9000), (130, 8500)]
+    column = next(name for name in rows[0] if name.startswith("static stiffness"))
+    np.testing.assert_allclose([float(row[column]) for row in rows], [9000, 8500], rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    "old, new, complaint",
+    [
+        ('"list"', '"grid"', "draws: needs design list"),
+        ("[static]", "[vary]\nk1 = [9000]\n[static]", "draws: must be given without [vary]"),
+        ('draws = "d.csv"\n', "", "[vary]: needs at least one"),
+        ('"d.csv"', '"e.csv"', "e.csv"),
+    ],
+)
+def test_a_study_of_draws_is_clear(tmp_path, old, new, complaint):
+    draws(tmp_path / "d.csv", 100)
+    (tmp_path / "s.toml").write_text(STUDY.replace(old, new))
+    _, err = zspring(tmp_path, "study", "s.toml", status=1)
+    assert complaint in err and len(err.strip().splitlines()) == 1

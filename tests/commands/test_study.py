@@ -402,7 +402,7 @@ def test_a_study_takes_a_set_from_the_package_or_beside_its_file(own_fmu, tmp_pa
         (("amplitudes =", "amplitude ="), ["[frf]", "amplitude", "amplitudes"]),
         (("[1, 4]", "[1000]"), ["[frf]", "stroke"]),
         (("[frf]\namplitudes = [1, 4]\nfrequencies", "[set]\n#"), ["[frf]", "[static]"]),
-        (("[vary]", "[varied]"), ["[vary]: needs at least one"]),
+        (("[vary]", "[varied]"), ["unknown key 'varied'; did you mean vary"]),
         (("[frf]", "[frff]\n[frf]"), ["unknown key 'frff'; did you mean frf"]),
         (("count = 4", "count = 4, scal = 1"), ["[vary] zspring.Mf: unknown key 'scal'; did you mean scale"]),
         (("from = 0.1", "from = false"), ["[vary] zspring.Mf.from = False: must be a number"]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -14,11 +14,23 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, Str
 from ..bench.measure import BENCH_PARAMETERS
 from ..bench.points import FrfSettings
 from ..bench.steady import LOOK_PERIODS
+from ..draws import read_draws
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..options import Numbers
 from ..parameter_sets import ACCURATE_STEP, PANTOGRAPHS, chosen_set
-from ..settings import ALL_FREQUENCIES, Band, Positive, Table, by_full_name, fitting, named, set_name, settings_of
+from ..settings import (
+    ALL_FREQUENCIES,
+    Band,
+    BesidePath,
+    Positive,
+    Table,
+    by_full_name,
+    fitting,
+    named,
+    set_name,
+    settings_of,
+)
 from ..variables import Value, Variables, text
 from .evaluations import FrfQuantity, Quantity, StaticQuantity
 
@@ -119,7 +131,8 @@ class _File(Table):
     samples: int = Field(0, ge=1, description="of sampled designs")
     seed: int = Field(1, ge=0, description="of sampled designs")
     parameter_set: Annotated[str, set_name(PANTOGRAPHS)] = Field("", alias="parameters")
-    vary: Annotated[dict[str, RangeOrValues], by_full_name(Range)] = Field({}, min_length=1, validate_default=True)
+    draws: BesidePath | None = Field(None, description="of `zspring identify`, instead of [vary]")
+    vary: Annotated[dict[str, RangeOrValues], by_full_name(Range)] = Field({})
     common: Annotated[dict[str, Any], by_full_name()] = Field({}, alias="set")
     frf: _Frf | None = None
     static: _Static | None = None
@@ -133,6 +146,12 @@ class _File(Table):
             raise ValueError("samples is missing")
         if self.design == "sobol" and not is_power_of_2:
             raise ValueError(f"samples = {self.samples}: design sobol needs a power of 2, such as 64")
+        if self.draws and self.design != "list":
+            raise ValueError("draws: needs design list")
+        if self.draws and self.vary:
+            raise ValueError("draws: must be given without [vary]")
+        if not self.draws and not self.vary:
+            raise ValueError("[vary]: needs at least one")
         for name in self.vary:
             if name in self.common:
                 raise ValueError(f"{name}: must be in [vary] or in [set], not in both")
@@ -175,7 +194,10 @@ def read_study(path: Path, fmu: Fmu) -> StudySettings:
         with named("[set] "):
             common = {name: _value(variables, name, value) for name, value in file.common.items()}
         with named("[vary] "):
-            vary = {name: _varied(variables, name, value, file.design) for name, value in file.vary.items()}
+            given = file.vary
+            if file.draws:
+                given = _by_parameter(read_draws(file.draws, fmu, (*BENCH_PARAMETERS, *common)))
+            vary = {name: _varied(variables, name, value, file.design) for name, value in given.items()}
         if file.parameter_set:
             common = {**chosen_set(file.parameter_set, fmu, but_not=(*BENCH_PARAMETERS, *vary)), **common}
         if "solver.step" not in vary:
@@ -186,6 +208,11 @@ def read_study(path: Path, fmu: Fmu) -> StudySettings:
             raise ZSpringError(f"[vary]: design list needs as many values of each parameter: {found}")
         quantities = tuple(table.quantity for table in (file.frf, file.static) if table)
         return StudySettings(file.design, file.samples, file.seed, vary, common, quantities)
+
+
+def _by_parameter(draws: Sequence[Mapping[str, Value]]) -> dict[str, Range | list]:
+    """Values of each parameter, one for each draw."""
+    return {name: [draw[name] for draw in draws] for name in draws[0]}
 
 
 def _varied(variables: Variables, name: str, given: Range | list, design: str) -> Range | tuple[Value, ...]:
