@@ -11,15 +11,8 @@ import pytest
 from zspring.bench.points import FrfPoint, FrfSettings
 from zspring.bench.refine import Extreme
 from zspring.fmu import Fmu
-from zspring.frf.report import (
-    Row,
-    difference_lines,
-    doubtful_lines,
-    error_line,
-    resonance_table,
-    richardson,
-    solver_line,
-)
+from zspring.frf.backbone import Row
+from zspring.frf.report import difference_lines, doubtful_lines, error_line, resonance_table, richardson, solver_line
 from zspring.frf.run import default_folder
 from zspring.interrupt import stop_on_interrupt
 from zspring.options import Numbers

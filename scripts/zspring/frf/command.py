@@ -142,7 +142,8 @@ def frf(
     and damping, and harmonics 2 to 7 of the contact force.
 
     Resonances and antiresonances are measured between these frequencies until they are known, approached as the
-    sweep does, some points at half the internal step: table resonances.csv, further points frf-refined.csv.
+    sweep does, some points at half the internal step: table resonances.csv, with the resonances by phase as well,
+    figure backbone.png, further points frf-refined.csv.
 
     Ctrl-C keeps all finished points, and the same command goes on from there; with other settings it needs
     another folder.

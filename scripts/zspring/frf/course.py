@@ -15,6 +15,7 @@ from ..bench.refine import AT_EXTREME, Extreme, Refinement, refine
 from ..fmu import Fmu
 from ..records import Record, fill
 from ..variables import Value
+from .backbone import PhaseResonance, phase_resonances
 from .files import frf_record, remaining, write_frf
 from .report import frf_head, richardson
 
@@ -28,6 +29,7 @@ class Course:
     points      asked for, by level and frequency, with those left out
     beside      other ones, around the extremes
     extremes    by level
+    phases      resonances by phase, by level
     errors      relative ones of H by half the step, where they were asked for
     Its methods raise Interrupted after Ctrl-C; finished points are kept.
     """
@@ -40,6 +42,7 @@ class Course:
         self.points: list[FrfPoint] = []
         self.beside: list[FrfPoint] = []
         self.extremes: dict[float, list[Extreme]] = {}
+        self.phases: dict[float, list[PhaseResonance]] = {}
         self.errors: dict[Key, float] = {}
         self._records: list[Record[Kept]] = []
 
@@ -75,6 +78,8 @@ class Course:
             (point for point, _ in record.results if point.place not in asked), key=attrgetter("place")
         )
         self.extremes = {task.sweep[0][0].level: task.extremes() for task in tasks()}
+        every = sorted([*self.points, *self.beside], key=attrgetter("frequency"))
+        self.phases = {level: phase_resonances([p for p in every if p.level == level]) for level in self.extremes}
         finer = self._at_half_step(self.settings.tolerance * AT_EXTREME)
         way = -1 if self.settings.direction == "down" else 1
         about = [(a, [p.frequency for p in e.about][::way]) for a, found in self.extremes.items() for e in found]

@@ -13,7 +13,7 @@ from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
 from ..records import Record
 from ..tables import write_table
 from ..variables import exact
-from .report import Row
+from .backbone import PhaseResonance, Row
 
 _HARMONICS = [f"harmonic_{n} [N]" for n in HARMONICS]
 
@@ -125,14 +125,19 @@ def write_frf(
 
 
 def write_resonances(path: Path, head: Mapping[str, str], rows: Iterable[Row]) -> Path:
-    """Extremes of the receptance; without errors where they are exact."""
+    """Extremes of the receptance, and the resonances by phase that belong to them; no errors where they are exact."""
     quantities = ["frequency [Hz]", "frequency_error [Hz]", "magnitude [m/N]", "magnitude_error [m/N]"]
-    cells = (
-        [
-            *(row.curve, row.direction, "resonance" if e.is_resonance else "antiresonance"),
-            *(e.frequency, e.frequency_error or math.nan, e.magnitude, e.magnitude_error or math.nan, e.doubt),
-        ]
-        for row in rows
-        for e in row.extremes
-    )
-    return write_table(path, head, ["curve", "direction", "kind", *quantities, "doubt"], cells)
+    by_phase = ["phase_frequency [Hz]", "phase_frequency_error [Hz]", "phase_magnitude [m/N]"]
+    cells = []
+    for row in rows:
+        for i, e in enumerate(row.extremes):
+            found = row.by_phase(i) or PhaseResonance(math.nan, math.nan, math.nan)
+            cells.append(
+                [
+                    *(row.curve, row.direction, "resonance" if e.is_resonance else "antiresonance"),
+                    *(e.frequency, e.frequency_error or math.nan, e.magnitude, e.magnitude_error or math.nan, e.doubt),
+                    *(row.displacement(e), found.frequency, found.frequency_error or math.nan, found.magnitude),
+                ]
+            )
+    columns = ["curve", "direction", "kind", *quantities, "doubt", "displacement [m]", *by_phase]
+    return write_table(path, head, columns, cells)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,18 +14,10 @@ from ..heads import file_head, model_note, now, synthetic_note
 from ..receptance import LinearModel
 from ..text_tables import aligned, with_error
 from ..variables import Value
+from .backbone import PhaseResonance, Row, exact_phase_resonances
 from .bounds import exact_extremes
 
 ERROR_LIMIT = 0.01  # of |H|, by the estimate from half the step; more is warned of
-
-
-@dataclass(frozen=True)
-class Row:
-    """Extremes of one curve, ascending: of a linear bound, or of a level swept in a direction."""
-
-    curve: str
-    direction: str
-    extremes: Sequence[Extreme]
 
 
 DOUBTS = {  # mark and meaning
@@ -61,18 +52,26 @@ def title(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], pant
 
 def resonance_rows(
     measured: Mapping[str, Mapping[float, Sequence[Extreme]]],
+    phases: Mapping[str, Mapping[float, Sequence[PhaseResonance]]],
     bounds: Mapping[str, LinearModel],
     band: tuple[float, float],
     unit: str,
 ) -> list[Row]:
     """Extremes of the receptance, of the levels between the linear bounds.
 
-    measured    by direction and level (in `unit`)
+    measured    by direction and level (in `unit`); phases likewise, its resonances by phase
     band        Hz, where those of the bounds are looked for; they are exact
     """
-    first, *last = (Row(name, "", exact_extremes(model, band)) for name, model in bounds.items())
+    first, *last = (
+        Row(name, "", exact_extremes(model, band), exact_phase_resonances(model, band))
+        for name, model in bounds.items()
+    )
     levels = sorted({level for found in measured.values() for level in found})
-    middle = [Row(f"{level:g} {unit}", way, found[level]) for level in levels for way, found in measured.items()]
+    middle = [
+        Row(f"{level:g} {unit}", way, found[level], phases[way][level], level, unit)
+        for level in levels
+        for way, found in measured.items()
+    ]
     return [first, *middle, *last]
 
 

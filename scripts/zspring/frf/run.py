@@ -17,6 +17,7 @@ from ..parameter_sets import ACCURATE_STEP
 from ..records import keep_others
 from ..variables import text
 from . import report
+from .backbone_plot import backbone_figure
 from .bounds import linear_bounds
 from .course import Course
 from .cycle_plot import cycle_figure
@@ -80,7 +81,8 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
     written = [path for course in courses.values() for path in course.write()]
     if wanted.extremes:
         found = {way: course.extremes for way, course in courses.items()}
-        rows = report.resonance_rows(found, bounds, _band(settings), settings.unit)
+        phases = {way: course.phases for way, course in courses.items()}
+        rows = report.resonance_rows(found, phases, bounds, _band(settings), settings.unit)
         written.append(write_resonances(table, head, rows))
         lines[:0] = report.resonance_table(rows)
     if comparison and wanted.measured:
@@ -92,6 +94,9 @@ def run_frf(fmu: Fmu, settings: FrfSettings, folder: Path, wanted: Wanted) -> No
     save(frf_figure(drawn, levels, bounds, wanted.quantity, settings.stroke, title), written[-1])
     written.append(folder / f"cycle.{wanted.suffix}")
     save(cycle_figure({way: points for way, (points, _) in drawn.items()}, title), written[-1])
+    if wanted.extremes and len(settings.amplitudes) > 1:
+        written.append(folder / f"backbone.{wanted.suffix}")
+        save(backbone_figure(rows, f"Resonances by level: {title}"), written[-1])
     for course in courses.values():
         course.forget()
 
