@@ -187,9 +187,7 @@ def test_an_interruption_while_the_report_is_written_keeps_all_runs(quick, monke
     edition_2002 = read_edition(packaged_edition("en-50318-2002")).only_first()
     own = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it for what it starts with &
     with Fmu() as pantograph, Fmu(installed_fmu(CATENARY)) as catenary:
-        monkeypatch.setattr(
-            "zspring.en50318.page.Picture.source", property(lambda _: signal.raise_signal(signal.SIGINT))
-        )
+        monkeypatch.setattr("zspring.page.Picture.source", property(lambda _: signal.raise_signal(signal.SIGINT)))
         with pytest.raises(Interrupted, match=r"1 runs are kept in .*runs\.csv; the same command goes on from there"):
             validate(Plan([edition_2002], False, ()), catenary, pantograph, folder, 1)
     signal.signal(signal.SIGINT, own)

@@ -14,10 +14,10 @@ from zspring.en50318 import comparison, report, summary
 from zspring.en50318.edition import judge, packaged_edition, read_edition
 from zspring.en50318.files import BY_SPAN
 from zspring.en50318.own_data import OwnData, agreement_chapter, series_chapter
-from zspring.en50318.page import BAD, GOOD, Cell, Table
 from zspring.en50318.workers import Finished
 from zspring.line.series import Series
 from zspring.line.statistics import FIGURES, Section
+from zspring.page import BAD, GOOD, Cell, Table
 
 FOUND = {
     "mean_force": 100.0,

@@ -16,7 +16,7 @@ from ..fmu import Fmu
 from ..line.mean_force import TOLERANCE
 from ..line.series import BAND, LEAST_RATE
 from ..line.statistics import ORDER, PARTS
-from .page import WORDS, Cell, Chapter, Table
+from ..page import WORDS, Cell, Chapter, Table
 
 TITLE = "What this report shows, and what not"
 NO_CERTIFICATE = "It is no certificate and does not replace the assessment that the standard asks for."

@@ -11,9 +11,9 @@ from ..line.limits import near_wave_speed, of_series
 from ..line.result import read_result
 from ..line.series import Series
 from ..line.statistics import Statistics, statistics
+from ..page import Chapter, Picture, Table
 from . import plot, report, summary
 from .edition import Edition, Judgement, judge
-from .page import Chapter, Picture, Table
 from .plan import Run, slug
 from .workers import Finished
 

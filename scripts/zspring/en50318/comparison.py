@@ -15,9 +15,9 @@ from ..fmu import Fmu
 from ..line.limits import near_wave_speed
 from ..line.result import read_result
 from ..line.statistics import FIGURES
+from ..page import Cell, Chapter, Picture, Table
 from . import plot, report, summary
 from .files import BY_SPAN
-from .page import Cell, Chapter, Picture, Table
 from .plan import HEAD_LINE, HEADS, STARTS, Run
 from .workers import Finished
 

@@ -19,11 +19,11 @@ from ..line.limits import of_series
 from ..line.series import Series, read_series, require_pressing
 from ..line.stated import SAME_SPEED, agreed
 from ..line.statistics import Section, Statistics, statistics
+from ..page import Cell, Chapter, Picture, Table, keep_other_reports
 from ..parameter_sets import LINES, chosen_set
 from ..variables import Value, with_unit
 from . import about, plot, report, summary
 from .edition import Case, Edition, Judgement, agreement, judge
-from .page import Cell, Chapter, Picture, Table, keep_other_reports
 from .plan import section_of, slug
 from .run import REPORT, finish
 

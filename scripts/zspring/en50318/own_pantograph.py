@@ -8,10 +8,10 @@ from pathlib import Path
 
 from ..fmu import Fmu
 from ..heads import synthetic_note
+from ..page import WORDS, Cell, Chapter, Picture, Table
 from ..variables import Value, with_unit
 from . import plot, report, summary
 from .chapters import Outcome
-from .page import WORDS, Cell, Chapter, Picture, Table
 from .plan import Run
 
 GROUP = "own pantograph"

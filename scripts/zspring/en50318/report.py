@@ -10,11 +10,11 @@ from ..bench.compare import LevelComparison
 from ..fmu import Fmu
 from ..line.mean_force import mean_force
 from ..line.statistics import FIGURES, Statistics
+from ..page import BAD, GOOD, WORDS, Cell, Table
 from ..parameter_sets import describe_set
 from ..text_tables import aligned
 from ..variables import text
 from .edition import Case, Judgement, sets_of
-from .page import BAD, GOOD, WORDS, Cell, Table
 from .plan import Run
 from .summary import share
 

@@ -9,13 +9,13 @@ from pathlib import Path
 from ..fmu import Fmu
 from ..interrupt import Interrupted
 from ..line.statistics import BAND, ORDER
+from ..page import Chapter, keep_other_reports, write_report
 from ..records import Record, fill
 from . import about, chapters, comparison, report, summary
 from .edition import Edition
 from .files import missing, put_in_order, run_record
 from .own_pantograph import OwnPantograph
 from .own_pantograph import lines as printed
-from .page import Chapter, keep_other_reports, write_report
 from .plan import Run, head_runs, reference_runs, sensitivity_runs
 from .workers import Finished, run_all
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 
 from ..line.statistics import Section, Statistics
+from ..page import BAD, GOOD, WORDS, Cell, Chapter, Table
 from .edition import DEVIATION_SHARE, Judgement
-from .page import BAD, GOOD, WORDS, Cell, Chapter, Table
 
 TITLE = "Summary"
 CRITERIA = (

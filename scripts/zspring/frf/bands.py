@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,21 +21,10 @@ from ..records import Record, fill
 from ..tables import write_table
 from ..variables import Value
 from . import report
-from .bands_plot import bands_figure
+from .bands_plot import Band, bands_figure
 from .course import all_parameters
 
 Drawn = tuple[int, float, float, complex]  # number, 0 for the parameters as given; level, frequency in Hz, H in m/N
-
-
-@dataclass(frozen=True)
-class Band:
-    """Of one level; lower end, median and upper end (3, n) over the draws, NaN where one of them has no value."""
-
-    label: str
-    frequency: np.ndarray  # (n,) Hz
-    given: np.ndarray  # (n,) quantity of the parameters as given, complex
-    magnitude: np.ndarray  # (3, n)
-    phase: np.ndarray  # (3, n) deg
 
 
 def run_bands(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
 import matplotlib
 import numpy as np
@@ -12,8 +12,16 @@ from matplotlib.figure import Figure
 from ..bench.responses import QUANTITIES, phase_degrees
 from ..figures import new_figure
 
-if TYPE_CHECKING:
-    from .bands import Band
+
+@dataclass(frozen=True)
+class Band:
+    """Of one level; lower end, median and upper end (3, n) over the draws, NaN where one of them has no value."""
+
+    label: str
+    frequency: np.ndarray  # (n,) Hz
+    given: np.ndarray  # (n,) quantity of the parameters as given, complex
+    magnitude: np.ndarray  # (3, n)
+    phase: np.ndarray  # (3, n) deg
 
 
 def bands_figure(bands: Sequence[Band], quantity: str, title: str) -> Figure:

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..bench.curves import Curve
+from ..bench.fmu_bench import HARMONICS
 from ..bench.responses import phase_degrees
 from ..bench.static_test import StaticTest
 from ..figures import new_figure
@@ -105,4 +106,33 @@ def posterior_figure(problem: Problem, fit: Fit, posterior: Posterior, units: Ma
                 axes.set_xticklabels([])
             if j > 0:
                 axes.set_yticklabels([])
+    return figure
+
+
+def harmonics_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], title: str) -> Figure | None:
+    """Harmonics of the contact force over its first one, measured and fitted (n, 6) in N; None if none was measured."""
+    measured = [curve.harmonics for curve in curves if curve.harmonics is not None]
+    orders = [n for i, n in enumerate(HARMONICS) if any(np.isfinite(each.peak[:, i]).any() for each in measured)]
+    if not orders:
+        return None
+    figure = new_figure(8.5, 1.9 * len(orders) + 0.8)
+    panels = figure.subplots(len(orders), 1, sharex=True, squeeze=False)[:, 0]
+    colors = matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(curves)))
+    for axes, order in zip(panels, orders):
+        column = HARMONICS.index(order)
+        for curve, computed, color in zip(curves, fitted, colors):
+            percent = 100 * np.abs(curve.H) / curve.displacement
+            if curve.harmonics is not None:
+                peak, error = percent * curve.harmonics.peak[:, column], percent * curve.harmonics.error[:, column]
+                style = {"color": color, "linestyle": "none", "marker": "o", "fillstyle": "none", "markersize": 3}
+                axes.errorbar(curve.frequency, peak, np.nan_to_num(error), elinewidth=0.7, **style)
+            axes.plot(
+                curve.frequency, percent * computed[:, column], color=color, label=curve.label.replace("s2", "s²")
+            )
+        axes.set_ylabel(f"harmonic {order}  [%]")
+        axes.grid(True, linewidth=0.4, alpha=0.5)
+        axes.set_ylim(bottom=0)
+    panels[0].set_title(title)
+    panels[0].legend(fontsize=8, ncols=2, title="points measured, lines fitted", title_fontsize=8)
+    panels[-1].set_xlabel("frequency  [Hz]")
     return figure

@@ -103,7 +103,7 @@ def interval_table(
             digits = (b - a) / 4 if b > a else fit.standard_error[i]  # of about a standard error
             cells.append(f"{_with_error(a, digits)} .. {_with_error(b, digits)}")
         rows.append([name, *cells, fmu.variables[name].unit or ""])
-    return ["", *aligned(rows)]
+    return aligned(rows)
 
 
 def correlation_table(problem: Problem, fit: Fit) -> list[str]:
@@ -136,9 +136,9 @@ def residual_table(problem: Problem, fit: Fit) -> list[str]:
         if magnitude.size:
             worst, late = np.argmax(np.abs(magnitude)), np.argmax(np.abs(phase))
             cells = [
-                f"{100 * _rms(magnitude):.2f} %",
+                f"{100 * rms(magnitude):.2f} %",
                 f"{100 * magnitude[worst]:.1f} % ({kept.frequency[worst]:g} Hz)",
-                f"{_rms(phase):.2f} deg",
+                f"{rms(phase):.2f} deg",
                 f"{phase[late]:.1f} deg ({kept.frequency[late]:g} Hz)",
             ]
         rows.append([curve.label, f"{kept.frequency.size}", *cells])
@@ -146,7 +146,7 @@ def residual_table(problem: Problem, fit: Fit) -> list[str]:
     if problem.static and fit.answer.static is not None:
         measured, force = (f - f.mean() for f in (problem.static.force, fit.answer.static))
         lines.append(
-            f"static test: rms {_rms(force - measured):.3g} N of {_rms(measured):.3g} N, "
+            f"static test: rms {rms(force - measured):.3g} N of {rms(measured):.3g} N, "
             f"largest {np.max(np.abs(force - measured)):.3g} N"
         )
     return lines
@@ -159,5 +159,6 @@ def _with_error(value: float, error: float) -> str:
     return f"{value:.{min(max(1 - int(np.floor(np.log10(error))), 0), 12)}f}"
 
 
-def _rms(values: np.ndarray) -> float:
+def rms(values: np.ndarray) -> float:
+    """Root mean square."""
     return float(np.sqrt(np.mean(values**2)))

@@ -24,12 +24,14 @@ from ..fmu import Fmu
 from ..interrupt import Interrupted, stop_on_interrupt
 from ..records import keep_others
 from ..tables import read_rows
-from ..variables import parse, with_unit
+from ..variables import Value, parse, with_unit
 from . import report
+from .choice import Candidate, choice_table, name_of, others
 from .costs import Costs, cost_record
 from .files import fit_head, write_fitted, write_points, write_posterior
 from .fit import Fit, fit
-from .plot import fit_figure, posterior_figure, static_figure
+from .fit_report import write_fit_report
+from .plot import fit_figure, harmonics_figure, posterior_figure, static_figure
 from .posterior import Posterior, sample
 from .problem import Answer, Model, Problem, ThreeMassModel, ZSpringModel
 from .profile import profile_interval
@@ -88,23 +90,26 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
             drawn = _drawn(problem, model, result, stop)
             profiles = _profiles(problem, result, stop, log) if settings.uncertainty.profiles else None
             posterior = _posterior(fmu, problem, result, folder, stop, log) if settings.uncertainty.draws else None
+            chosen = [Candidate(name_of(fmu, {**defaults, **settings.fixed}), problem, result)]
+            if settings.compare_models:
+                chosen += _others(fmu, problem, result, defaults, model, stop, log)
             for name in PARTIAL:
                 (folder / name).unlink(missing_ok=True)
         finally:
             bench.close()
-        summary = [
-            *report.parameter_table(fmu, problem, result),
-            *report.doubts(problem, result),
-            *report.posterior_doubts(posterior),
-            *report.interval_table(fmu, problem, result, profiles, posterior),
-            "",
-            *report.correlation_table(problem, result),
-            "",
-            *report.residual_table(problem, result),
-            f"fitted in {time.perf_counter() - begin:.1f} s",
-        ]
-        for line in summary:
-            log.say(line)
+        tables = {
+            "Parameters": [
+                *report.parameter_table(fmu, problem, result),
+                *report.doubts(problem, result),
+                *report.posterior_doubts(posterior),
+            ],
+            "Intervals": report.interval_table(fmu, problem, result, profiles, posterior),
+            "Correlations": report.correlation_table(problem, result),
+            "Residuals": report.residual_table(problem, result),
+            "Models": choice_table(chosen) if settings.compare_models else [],
+        }
+        log.say("\n\n".join("\n".join(lines) for lines in tables.values() if lines))
+        log.say(f"fitted in {time.perf_counter() - begin:.1f} s")
     paths = [
         write_fitted(fmu, problem, result, defaults, folder / "fitted.ssv"),
         write_points(fmu, problem, result, folder / "fit.csv"),
@@ -119,6 +124,9 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
     figures = {"fit": fit_figure(curves, result.answer.curves, drawn, f"{title}: {settings.model} model")}
     if static and result.answer.static is not None:
         figures["static"] = static_figure(static, result.answer.static, f"{title}: static test")
+    harmonics = harmonics_figure(curves, result.answer.harmonics or (), f"{title}: harmonics of the contact force")
+    if harmonics and result.answer.harmonics:
+        figures["harmonics"] = harmonics
     if posterior:
         units = {name: fmu.variables[name].unit or "1" for name in settings.free}
         paths.append(write_posterior(fmu, problem, posterior, folder / "draws.csv"))
@@ -126,7 +134,8 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
     for name, figure in figures.items():
         paths.append(folder / f"{name}.{suffix}")
         save(figure, paths[-1])
-    print("written:", *paths, folder / "identify.log")
+    about = write_fit_report(fmu, problem, result, title, tables, figures, folder / "report.html")
+    print("written:", *paths, about, folder / "identify.log")
 
 
 def _keep_others(path: Path, head: Mapping[str, str]) -> None:
@@ -200,6 +209,18 @@ def _profiles(problem: Problem, result: Fit, stop, log: _Log) -> list[tuple[floa
             _check(stop)
             log.write(f"profile of {name}: {intervals[-1]} between its bounds")
     return intervals
+
+
+def _others(
+    fmu: Fmu, problem: Problem, result: Fit, defaults: Mapping[str, Value], model: Model, stop, log: _Log
+) -> list[Candidate]:
+    """The other models, each fitted from where this one ended, or from its own start values."""
+    found = []
+    for name, settings in others(fmu, problem.settings, defaults).items():
+        other = Problem(settings, model, problem.curves, problem.static)
+        x = result.x if list(settings.free) == list(problem.settings.free) else other.start
+        found.append(Candidate(name, other, _fit(other, x, name, stop, log)))
+    return found
 
 
 def _check(stop) -> None:

@@ -158,6 +158,7 @@ class Settings(Table):
     free: Annotated[dict[str, Free], by_full_name(Free)] = Field({}, min_length=1, validate_default=True)
     fixed: Annotated[dict[str, Any], by_full_name()] = Field({}, description="once read, all that are given")
     tied: Annotated[dict[str, Tie], by_full_name(Tie)] = Field({})
+    compare_models: bool = Field(False, description="with the other friction law, and a linear head")
     search: Search = Search()
     uncertainty: Uncertainty = Uncertainty()
 
@@ -180,6 +181,8 @@ class Settings(Table):
                 raise ValueError("static: the linear model has no static test")
             if self.harmonics:
                 raise ValueError("harmonics: the linear model has none")
+            if self.compare_models:
+                raise ValueError("compare_models: needs model zspring, whose amplitudes tell the models apart")
         for name, tie in self.tied.items():
             if name in self.free:
                 raise ValueError(f"tied.{name}: is free, too")

@@ -1,4 +1,4 @@
-"""The HTML report: chapters of text, tables and figures in one file that needs nothing else.
+"""A report as HTML: chapters of text, tables and figures in one file that needs nothing else.
 
 Figures are embedded as SVG. The page has no script, and its content security policy lets a browser load
 nothing from outside.
@@ -19,9 +19,9 @@ from pathlib import Path
 import jinja2
 from matplotlib.figure import Figure
 
-from ..figures import save
-from ..records import keep_others
-from ..tables import replaced
+from .figures import save
+from .records import keep_others
+from .tables import replaced
 
 GOOD, BAD, WORDS = "good", "bad", "words"
 
@@ -53,6 +53,13 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Lines:
+    """Lines as a terminal shows them."""
+
+    lines: Sequence[str]
+
+
+@dataclass(frozen=True)
 class Picture:
     """A figure, its caption, and the file it is written to beside the report."""
 
@@ -73,11 +80,11 @@ class Chapter:
     """A heading and what follows it, in order; texts are paragraphs."""
 
     title: str
-    blocks: list[str | Table | Picture] = field(default_factory=list)
+    blocks: list[str | Table | Lines | Picture] = field(default_factory=list)
 
-    def kinds(self) -> list[tuple[str, str | Table | Picture]]:
+    def kinds(self) -> list[tuple[str, str | Table | Lines | Picture]]:
         """Blocks with their kind, for the template."""
-        names = {str: "text", Table: "table", Picture: "picture"}
+        names = {str: "text", Table: "table", Lines: "lines", Picture: "picture"}
         return [(names[type(block)], block) for block in self.blocks]
 
 
@@ -88,14 +95,20 @@ def keep_other_reports(path: Path, settings: Mapping[str, str]) -> None:
         keep_others(path, settings, json.loads(html.unescape(found[1])) if found else {})
 
 
-def write_report(path: Path, title: str, chapters: Sequence[Chapter], settings: Mapping[str, str]) -> list[Path]:
-    """Write the page, and its pictures as PNG beside it; all paths written. `settings` tells reports apart."""
+def write_page(path: Path, title: str, chapters: Sequence[Chapter], settings: Mapping[str, str]) -> Path:
+    """Write the page alone. `settings` tells reports apart."""
     template = importlib.resources.files(__package__).joinpath("page.html").read_text(encoding="utf-8")
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     path.parent.mkdir(parents=True, exist_ok=True)
     page = environment.from_string(template).render(title=title, chapters=chapters, settings=json.dumps(settings))
     with replaced(path) as unfinished:
         unfinished.write_text(page, encoding="utf-8")
+    return path
+
+
+def write_report(path: Path, title: str, chapters: Sequence[Chapter], settings: Mapping[str, str]) -> list[Path]:
+    """Write the page, and its pictures as PNG beside it; all paths written."""
+    write_page(path, title, chapters, settings)
     pictures = [block for chapter in chapters for block in chapter.blocks if isinstance(block, Picture)]
     for picture in pictures:
         save(picture.figure, path.parent / picture.file)
