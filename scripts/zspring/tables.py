@@ -1,9 +1,9 @@
 """Tables in text files: one reader for those of users and our own, one writer.
 
 A file begins with lines of comment (#), ours with "# key: value". Then come a line of column names, NAME [UNIT],
-NAME (UNIT) or, as MATLAB writes that, NAME_UNIT_, and the rows. Cells are separated by commas, semicolons or tabs;
-where it is not commas, numbers may have a decimal comma. Capitals, underscores and blanks in names count for nothing.
-Text is UTF-8, UTF-16 with its mark, or Windows-1252.
+NAME (UNIT) or, as MATLAB writes that, NAME_UNIT_, perhaps one with units alone, and the rows. Cells are separated by
+commas, semicolons or tabs; where it is not commas, numbers may have a decimal comma. Capitals, underscores and blanks
+in names count for nothing. Text is UTF-8, UTF-16 with its mark, or Windows-1252.
 """
 
 from __future__ import annotations
@@ -123,14 +123,16 @@ class Table:
         return number
 
 
-def read_table(path: Path, aliases: Mapping[str, str] | None = None) -> Table:
+def read_table(path: Path, aliases: Mapping[str, str] | None = None, skip: int = 0) -> Table:
     """The table of a file as described above.
 
     aliases     canonical names that stand for others
+    skip        lines at the begin that are passed over
     Raises ZSpringError for a file that is no text, has no column names, two columns of one name, both decimal commas
     and points, or a row that is longer or shorter than the line of column names.
     """
-    numbered = [(number, line) for number, line in enumerate(_text(path).splitlines(), 1) if line.strip()]
+    lines = enumerate(_text(path).splitlines(), 1)
+    numbered = [(number, line) for number, line in lines if line.strip() and number > skip]
     content = [(number, line) for number, line in numbered if not line.startswith("#")]
     if not content:
         raise ZSpringError(f"{path}: needs a line of column names")
@@ -141,12 +143,17 @@ def read_table(path: Path, aliases: Mapping[str, str] | None = None) -> Table:
     for number, row in rows:
         if len(row) != len(labels):
             raise ZSpringError(f"{path}, line {number}: {len(row)} values for {len(labels)} columns")
+    units: Sequence[str] = ()
+    if rows and _are_units(rows[0][1]):
+        (_, units), *rows = rows
     signs = {match[1] or match[2] for _, row in rows for cell in row if (match := _DECIMAL.fullmatch(cell))}
     if len(signs) > 1:
         raise ZSpringError(f"{path}: numbers with decimal commas and with decimal points: must be one of both")
     columns: dict[str, Column] = {}
-    for label, column in zip(labels, zip(*(row for _, row in rows)) if rows else [()] * len(labels)):
+    contents = zip(*(row for _, row in rows)) if rows else [()] * len(labels)
+    for place, (label, column) in enumerate(zip(labels, contents)):
         name, unit = split_label(label)
+        unit = (units[place].strip("[]()") if units else "") or unit
         key = canonical(name)
         key = (aliases or {}).get(key, key)
         if not label and not any(column):  # a separator at the end of every line
@@ -155,6 +162,12 @@ def read_table(path: Path, aliases: Mapping[str, str] | None = None) -> Table:
             raise ZSpringError(f"{path}: two columns {name!r}")
         columns[key] = Column(label, name, unit, column)
     return Table(path, _head(line for _, line in numbered), columns, [number for number, _ in rows], "".join(signs))
+
+
+def _are_units(row: Sequence[str]) -> bool:
+    """Whether a row below the names has their units: no number, and nothing but what units are."""
+    texts = [cell.strip("[]()") for cell in row]
+    return any(map(str.isalpha, "".join(texts))) and all(map(is_unit, texts))
 
 
 def read_rows(path: Path) -> tuple[dict[str, str], list[dict[str, str]]]:

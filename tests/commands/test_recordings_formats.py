@@ -12,9 +12,10 @@ import pyuff
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
-from shaker import shaken, write_text
+from shaker import LINEAR, shaken, write_text
 from zspring.errors import ZSpringError
 from zspring.recordings.formats import read_recording
+from zspring.recordings.run import holds_in
 from zspring.recordings.settings import Settings
 from zspring.recordings.signals import Record, read_record
 
@@ -47,6 +48,28 @@ def test_text_with_commas_in_its_numbers(tmp_path):
     assert_same(read(path))
 
 
+def test_text_as_data_loggers_write_it(tmp_path):
+    """Lines about the logger, names, their units below, two load cells; many more values than the drive needs."""
+    record = shaken((2.0, 3.3), rate=5000.0)
+    columns = {
+        "Time": record.time,
+        "cell A": 0.3 * record.force,
+        "cell B": 0.7 * record.force,
+        "LVDT": record.displacement,
+    }
+    path = write_text(tmp_path / "a.csv", columns)
+    names, *rows = path.read_text().splitlines()
+    path.write_text("\n".join(["Logger 7, bench 3", "channels: 4", names, "s,[N],[N],(m)", *rows]))
+    force = {"channel": ["cell A", "cell B"], "sense": "contact"}
+    content = {"force": force, "displacement": {"channel": "lvdt", "positive": "up"}}
+    settings = Settings.model_validate({**content, "recording": [{"file": path.name, "skip": 2}]}, context=tmp_path)
+    found = read_record(settings.recording[0], settings)
+    assert found.rate == pytest.approx(5000)
+    np.testing.assert_allclose(found.force.values, record.force, rtol=1e-9)
+    points, _ = holds_in(found, settings)
+    np.testing.assert_allclose([p.H for p in points], [LINEAR.receptance(f) for f in (2.0, 3.3)], rtol=1e-6)
+
+
 def test_mat_files_of_both_kinds(tmp_path):
     """Vectors and a rate; the columns of a matrix; a struct; and version 7.3, whose arrays lie on their side."""
     savemat(tmp_path / "a.mat", {**VALUES, "Fs": 200.0, "note": "bench 3"})
@@ -73,6 +96,11 @@ def test_hdf5_with_units(tmp_path):
         for name, values in VALUES.items():
             file[f"run 1/{name}"] = values
             file[f"run 1/{name}"].attrs["unit"] = UNITS[name]
+        table = np.zeros(RECORD.time.size, [("force", "f8"), ("position", "f8")])
+        table["force"], table["position"] = VALUES.values()
+        file["table"] = table
+    fields = {name: {**SETTINGS[name], "channel": f"table/{SETTINGS[name]['channel']}"} for name in SETTINGS}
+    assert_same(read(tmp_path / "a.h5", time={"rate": 200.0}, **fields))
     named = {name: {**SETTINGS[name], "channel": f"run 1/{SETTINGS[name]['channel']}"} for name in SETTINGS}
     for sensor in named.values():
         del sensor["unit"]

@@ -81,9 +81,9 @@ def test_records_that_cannot_be_used_are_refused(tmp_path, columns, message):
     "name, change, message, kept",
     [  # what happens to the third hold, or within it
         ("force__N", (ENDS[1], ENDS[2], lambda x: np.clip(x, None, 90.15)), r"left out: force clipped", 3),
-        ("force__N", (ENDS[1] + 1.0, ENDS[1] + 1.05, lambda x: 0 * x), r"marked: 1 of 9 periods", 4),
+        ("force__N", (ENDS[1] + 1.0, ENDS[1] + 1.25, lambda x: 0 * x), r"marked: [23] of \d+ periods disturbed", 4),
         ("force__N", (ENDS[1] + 0.9, ENDS[1] + 1.4, lambda x: 0 * x), r"left out: [34] steady periods, 5 at least", 3),
-        ("force__N", (ENDS[1] + 1.0, ENDS[1] + 1.3, lambda x: x * np.nan), r"marked: 2 of 9 periods disturbed", 4),
+        ("force__N", (ENDS[1] + 1.0, ENDS[1] + 1.3, lambda x: x * np.nan), r"marked: [23] of \d+ periods disturbed", 4),
         ("force__N", (ENDS[1] + 0.2, ENDS[2], lambda x: x * np.nan), r"left out: force has missing values", 3),
     ],
 )

@@ -30,6 +30,7 @@ SPELLINGS = {
     "millimetres": "frequency [Hz],amplitude [mm/s2],real [mm/N],imaginary [mm/N]\n2,1e3,.5,-.125\n2.5,1e3,.25,-.05\n",
     "comments and empty lines": "# a: b\n\n" + PLAIN.replace("\n2.5", "\n\n# later\n2.5"),
     "Windows' ends of lines": PLAIN.replace("\n", "\r\n"),
+    "units below the names": "frequency,amplitude,real,imaginary\nHz,[m/s2],(m/N),m/N\n" + PLAIN.split("\n", 1)[1],
     "a separator at the end": PLAIN.replace("\n", ",\n"),
 }
 

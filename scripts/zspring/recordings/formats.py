@@ -17,9 +17,10 @@ HDF5 = b"\x89HDF\r\n\x1a\n"  # at the begin of a file, or after MATLAB's 512 byt
 TIME_RECORD = 1  # function type of data sets 58
 
 
-def read_recording(path: Path) -> Recording:
+def read_recording(path: Path, skip: int = 0) -> Recording:
     """The channels of a file, whose suffix tells its form: .mat, .h5, .hdf5, .hdf, .tdms, .uff, .unv, .uf; else text.
 
+    skip    lines of a text before that with the names
     Raises ZSpringError for a missing package, a file that is not what its suffix tells, or without channels.
     """
     readers: dict[str, Callable[[Path], dict[str, Channel]]] = {
@@ -34,15 +35,16 @@ def read_recording(path: Path) -> Recording:
     }
     if not path.is_file():
         raise FileNotFoundError(2, "No such file", str(path))
-    channels = readers.get(path.suffix.lower(), _text)(path)
+    reader = readers.get(path.suffix.lower())
+    channels = reader(path) if reader else _text(path, skip)
     if not channels:
         raise ZSpringError(f"{path}: no channel with values over time")
     return Recording(path, channels)
 
 
-def _text(path: Path) -> dict[str, Channel]:
+def _text(path: Path, skip: int) -> dict[str, Channel]:
     """Columns of a table as `tables.py` reads it; an empty cell or NaN is a missing value."""
-    table = read_table(path)
+    table = read_table(path, skip=skip)
     return {column.name: Channel(table.numbers(key, gaps=True), column.unit) for key, column in table.columns.items()}
 
 
@@ -89,7 +91,11 @@ def _hdf5(path: Path) -> dict[str, Channel]:
     found: dict[str, Channel] = {}
 
     def visit(name: str, item: Any) -> None:
-        if not isinstance(item, h5py.Dataset) or name.startswith("#") or item.dtype.kind not in "fiu":
+        if not isinstance(item, h5py.Dataset) or name.startswith("#"):
+            return
+        if item.dtype.names:  # a table
+            for field in item.dtype.names:
+                found.update(_columns(f"{name}/{field}", np.asarray(item[field])))
             return
         if item.attrs.get("MATLAB_class", b"double") in (b"char", b"cell", b"logical"):
             return

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, Strict, model_validator
+from pydantic import BeforeValidator, Field, Strict, model_validator
 
 from ..bench.curves import SENSES
 from ..errors import ZSpringError
@@ -36,16 +36,28 @@ class Time(Table):
         return self
 
 
-class Sensor(Table):
-    """A channel of the bench."""
+Names = Annotated[
+    tuple[str, ...],
+    BeforeValidator(lambda names: (names,) if isinstance(names, str) else names),
+    Strict(False),
+    fitting("must be the name of a channel, or a list of names", len),
+]
 
-    channel: str
+
+class Sensor(Table):
+    """A channel of the bench, or several whose sum counts."""
+
+    channel: Names
     unit: str | None = Field(default=None, description="of the file's values, where it does not tell it")
     sensitivity: str | None = Field(default=None, description='number and unit, as "22.4 mV/N"')
     delay: float = Field(default=0.0, description="s, by which its values come late")
     limit: Positive | None = Field(
         default=None, description="largest value that can be recorded, in the channel's unit"
     )
+
+    @property
+    def named(self) -> str:
+        return " + ".join(map(repr, self.channel))
 
     def factor(self, file_unit: str | None, wanted: str, where: str) -> float:
         """From the file's values to `wanted`. Raises ZSpringError where units are missing, disagree or do not fit."""
@@ -54,7 +66,7 @@ class Sensor(Table):
         unit = self.unit or file_unit
         if unit is None:
             given = "V" if self.sensitivity else wanted
-            raise ZSpringError(f'{where}: the file does not tell the unit of {self.channel!r}: unit = "{given}", say')
+            raise ZSpringError(f'{where}: the file does not tell the unit of {self.named}: unit = "{given}", say')
         try:
             if self.sensitivity is None:
                 return conversion(unit, wanted)[1]
@@ -101,6 +113,7 @@ class File(Table):
 
     path: BesidePath = Field(alias="file")
     level: str | None = Field(default=None, description="of the amplitude, for all holds of the file")
+    skip: int = Field(default=0, ge=0, description="lines of a text before that with the names of the columns")
 
 
 class Sweep(Table):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -73,9 +74,9 @@ def read_record(file: File, settings: Settings) -> Record:
     Raises ZSpringError for a channel that is missing or has no values, units that are not clear, and channels that do
     not have one sampling rate.
     """
-    recording = read_recording(file.path)
+    recording = read_recording(file.path, file.skip)
     sensors: dict[str, Sensor] = {"force": settings.force, **settings.motions}
-    channels = {name: recording[sensor.channel] for name, sensor in sensors.items()}
+    channels = {name: summed(f"{file.path}, [{name}]", recording, sensor.channel) for name, sensor in sensors.items()}
     clock = _clock(recording, settings)
     rates = {name: 1 / c.step for name, c in channels.items() if c.step}
     _one_rate(file.path, rates)
@@ -117,11 +118,27 @@ def read_record(file: File, settings: Settings) -> Record:
     return Record(file.path, file.level, 1 / step, time, parts, force, motions, remarks)
 
 
+def summed(where: str, recording: Recording, names: Sequence[str]) -> Channel:
+    """The sum of channels, as of load cells beside each other. Raises ZSpringError where they do not fit together."""
+    first, *others = (recording[name] for name in names)
+    values = first.values.copy()
+    for name, other in zip(names[1:], others):
+        if (other.unit, other.step, other.start, other.values.size) != (
+            first.unit,
+            first.step,
+            first.start,
+            values.size,
+        ):
+            raise ZSpringError(f"{where}: {names[0]!r} and {name!r} differ in unit, time or number of values")
+        values += other.values
+    return replace(first, values=values)
+
+
 def _clock(recording: Recording, settings: Settings) -> Channel | None:
     """The channel of time: the one named, else one with a usual name where nothing else tells the time."""
     if settings.time.channel is not None:
         return recording[settings.time.channel]
-    if settings.time.rate or recording[settings.force.channel].step:
+    if settings.time.rate or recording[settings.force.channel[0]].step:
         return None
     return next((channel for name, channel in recording.channels.items() if canonical(name) in TIME_NAMES), None)
 
@@ -142,10 +159,10 @@ def _one_rate(path: Path, rates: dict[str, float]) -> None:
 def _signal(where: str, sensor: Sensor, values: np.ndarray, factor: float) -> Signal:
     there = values[np.isfinite(values)]
     if not there.size:
-        raise ZSpringError(f"{where}: {sensor.channel!r} has no value")
+        raise ZSpringError(f"{where}: {sensor.named} has no value")
     distinct = np.unique(there)
     if distinct.size < 2:
-        raise ZSpringError(f"{where}: {sensor.channel!r} is {distinct[0]:g} all the time: is the sensor connected?")
+        raise ZSpringError(f"{where}: {sensor.named} is {distinct[0]:g} all the time: is the sensor connected?")
     steps = np.diff(distinct)
     step = float(steps[steps > 1e-9 * (distinct[-1] - distinct[0])].min())
     beyond = np.abs(values) >= (np.inf if sensor.limit is None else sensor.limit * (1 - 1e-6))

@@ -15,6 +15,7 @@ FEWEST_TURNS = 6  # of a hold
 OUTLYING = 5.0  # standard deviations
 APART = 0.02  # of a turn, from the line through all so far: where noise leaves it, the frequency is another
 MOST_APART = 0.1  # of a turn: more noise than this hides the steps
+FINE = 12  # values in a period of the band's highest frequency, at least
 NEARBY = 15  # turns that tell the noise
 AMPLITUDE_APART = 0.1  # relative, where noise leaves it
 
@@ -57,11 +58,14 @@ def turns_of(start: float, rate: float, motion: np.ndarray, band: tuple[float, f
     from scipy.fft import next_fast_len
     from scipy.signal import butter, hilbert, sosfiltfilt
 
+    together = max(1, int(rate / (FINE * band[1])))  # values that are one
+    motion = motion[: motion.size // together * together].reshape(-1, together).mean(1)
+    start, rate = start + (together - 1) / (2 * rate), rate / together
     band = band[0], min(band[1], 0.45 * rate)
     if band[0] >= band[1] or motion.size < 40:
         return Turns(np.empty(0), np.empty(0))
     pad = min(motion.size - 1, int(3 * rate / band[0]))
-    extended = np.pad(motion - motion.mean(), pad, mode="reflect", reflect_type="odd")
+    extended = np.pad(motion - motion.mean(), pad, mode="reflect")
     analytic = hilbert(extended, next_fast_len(extended.size))[: extended.size]
     sos = butter(2, band, "bandpass", fs=rate, output="sos")
     analytic = (sosfiltfilt(sos, analytic.real) + 1j * sosfiltfilt(sos, analytic.imag))[pad : pad + motion.size]
@@ -128,8 +132,8 @@ def _joined(holds: Sequence[Stretch]) -> list[Stretch]:
         if joined:
             before = joined[-1]
             gap = (hold.begin - before.end) * before.frequency
-            blur = 1 / (before.frequency * (before.end - before.begin))  # relative, of a hundredth of a turn
-            alike = abs(hold.frequency / before.frequency - 1) < 0.02 * blur
+            turns = min(each.frequency * (each.end - each.begin) for each in (before, hold))
+            alike = abs(hold.frequency / before.frequency - 1) < 2 * APART / turns
             alike &= abs(hold.amplitude / before.amplitude - 1) < AMPLITUDE_APART
             if alike and 0 <= gap < FEWEST_TURNS and abs(gap - round(gap)) < 2 * APART:
                 joined[-1] = replace(before, end=hold.end)
