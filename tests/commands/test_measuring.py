@@ -18,7 +18,7 @@ from zspring.bench.measured import Curve
 from zspring.bench.model import BenchModel
 from zspring.bench.points import FrfSettings, left_out, sweeps
 from zspring.bench.refine import LEAST_STEP, turns
-from zspring.bench.responses import acceleration_of, as_quantity, phase_degrees, response_of
+from zspring.bench.responses import QUANTITIES, acceleration_of, as_quantity, phase_degrees, response_of
 from zspring.fmu import Fmu, StepDiscarded
 from zspring.study.evaluations import FrfQuantity
 
@@ -435,13 +435,28 @@ def test_every_unit_of_an_amplitude_becomes_an_acceleration(unit, power, factor)
     np.testing.assert_allclose(acceleration_of(unit, frequency, np.array([3.0, 3.0])), expected, rtol=1e-12)
 
 
-def test_the_phase_is_cut_a_right_angle_beyond_where_a_driving_point_has_it():
-    """-180 to 0 deg for receptance, 0 to 180 deg for stiffness; a little noise does not throw it a turn away."""
+@pytest.mark.parametrize("quantity, unit", QUANTITIES.items())
+def test_every_quantity_is_what_its_unit_says_and_its_phase_is_cut_a_right_angle_beyond_a_driving_point(quantity, unit):
+    """Back to the receptance by what reads files; a little noise does not throw a phase a turn away."""
+    frequency = np.array([0.7, 5.0, 12.0])
+    bounds = {"receptance": -180, "stiffness": 0, "mobility": -90, "impedance": -90, "accelerance": 0, "mass": -180}
     for degrees in (-269.0, -180.5, -180.0, -179.5, -90.0, -0.5, 0.0, 0.5, 89.0):
-        value = 1e-4 * np.exp(1j * np.radians(degrees))
-        assert phase_degrees(value, "receptance") == pytest.approx(degrees, abs=1e-9)
-        assert phase_degrees(1 / value, "stiffness") == pytest.approx(-degrees, abs=1e-9)
-    both = np.array([1 - 1e-3j, -1 + 1e-3j])
-    np.testing.assert_allclose(phase_degrees(both, "receptance"), np.degrees([-1e-3, -np.pi - 1e-3]), atol=1e-6)
-    np.testing.assert_allclose(as_quantity(both, "stiffness") * both, 1)
-    assert as_quantity(both, "receptance") is both
+        H = 1e-4 * np.exp(1j * np.radians(degrees)) * np.array([1, 2, 3])
+        value = as_quantity(H, quantity, frequency)
+        np.testing.assert_allclose(response_of(unit).receptance(frequency, value), H, rtol=1e-12)
+        phase = phase_degrees(value, quantity)
+        np.testing.assert_allclose(np.exp(1j * np.radians(phase)), value / abs(value), rtol=1e-9)
+        inside = np.abs(phase - bounds[quantity] - 90)
+        np.testing.assert_allclose(inside, abs(degrees + 90), atol=1e-9)  # of receptance from its middle
+    assert np.isnan(as_quantity(complex(np.nan, np.nan), quantity, 5.0))
+
+
+def test_what_quantities_of_a_single_mass_are():
+    """Of 3 kg that hang on nothing: H = 1/(m s^2)."""
+    f = np.array([0.5, 4.0])
+    H = -1 / (3.0 * (2 * np.pi * f) ** 2) + 0j
+    np.testing.assert_allclose(as_quantity(H, "mass", f), 3.0)
+    np.testing.assert_allclose(as_quantity(H, "accelerance", f), 1 / 3)
+    np.testing.assert_allclose(as_quantity(H, "impedance", f), 3.0 * 2j * np.pi * f)
+    np.testing.assert_allclose(as_quantity(H, "stiffness", f), -3.0 * (2 * np.pi * f) ** 2)
+    np.testing.assert_allclose(phase_degrees(as_quantity(H, "mass", f), "mass"), 0.0, atol=1e-12)

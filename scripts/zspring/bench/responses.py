@@ -12,11 +12,13 @@ s = i omega and v the measured value, exp(i omega t):
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ..units import conversion
+
+Number = TypeVar("Number", complex, np.ndarray)
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,17 @@ class Response:
         value = self.factor * value
         return (1 / value if self.inverse else value) / s**self.derivatives
 
+    def of(self, H: Number, frequency: float | np.ndarray) -> Number:
+        """The value from H (n,) in m/N at frequencies (n,) in Hz; NaN where H is, a point that was left out."""
+        with np.errstate(invalid="ignore"):
+            motion: Any = H * (2j * np.pi * frequency) ** self.derivatives if self.derivatives else H
+            return 1 / motion if self.inverse else motion
+
+    @property
+    def middle(self) -> float:
+        """Phase in degrees that a driving point is never more than a right angle from."""
+        return 90.0 * (1 - self.derivatives if self.inverse else self.derivatives - 1)
+
 
 # The unit tells the kind.
 RESPONSES = {
@@ -43,6 +56,14 @@ RESPONSES = {
     "N.s/m": Response("mechanical impedance", 1, True),
     "1/kg": Response("accelerance", 2, False),
     "kg": Response("apparent mass", 2, True),
+}
+QUANTITIES = {  # in which an FRF is shown, by the names that options take
+    "receptance": "m/N",
+    "stiffness": "N/m",
+    "mobility": "m/(N.s)",
+    "impedance": "N.s/m",
+    "accelerance": "1/kg",
+    "mass": "kg",
 }
 AMPLITUDES = {"m/s2": 2, "m/s": 1, "m": 0}  # peak of the imposed sine: derivatives of the displacement
 
@@ -59,17 +80,12 @@ def acceleration_of(unit: str, frequency: np.ndarray, amplitude: np.ndarray) -> 
     return factor * amplitude * (2 * np.pi * frequency) ** (2 - AMPLITUDES[kind])
 
 
-Number = TypeVar("Number", complex, np.ndarray)
-QUANTITIES = {"receptance": "m/N", "stiffness": "N/m"}  # in which an FRF is shown
-
-
-def as_quantity(H: Number, quantity: str) -> Number:
-    """Receptance H in m/N, or dynamic stiffness 1/H in N/m."""
-    with np.errstate(invalid="ignore"):  # of NaN, a point that was left out
-        return H if quantity == "receptance" else 1 / H
+def as_quantity(H: Number, quantity: str, frequency: float | np.ndarray) -> Number:
+    """One of QUANTITIES from the receptance H in m/N at a frequency in Hz."""
+    return RESPONSES[QUANTITIES[quantity]].of(H, frequency)
 
 
 def phase_degrees(value: complex | np.ndarray, quantity: str) -> float | np.ndarray:
-    """Phase in degrees, cut far from where a driving point has it: -180 to 0 (receptance), 0 to 180."""
-    sign = -1 if quantity == "receptance" else 1
-    return sign * ((sign * np.degrees(np.angle(value)) + 90) % 360 - 90)
+    """Phase in degrees, cut far from where a driving point has it: -180 to 0 (receptance), -90 to 90 (mobility) ..."""
+    middle = RESPONSES[QUANTITIES[quantity]].middle
+    return middle - (middle - np.degrees(np.angle(value)) + 180) % 360 + 180

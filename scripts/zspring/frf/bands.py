@@ -72,7 +72,7 @@ def run_bands(
     for level in dict.fromkeys(level for level, _ in places):
         frequency = np.array(sorted(f for at, f in places if at == level))
         H = np.array([[known[n, level, f] for f in frequency.tolist()] for n in range(len(sets))])
-        bands.append(_band(level, settings.unit, frequency, as_quantity(H, quantity), quantity))
+        bands.append(_band(level, settings.unit, frequency, as_quantity(H, quantity, frequency), quantity))
     written = [_write(folder / "bands.csv", head, bands, quantity), folder / f"bands.{suffix}"]
     title = report.title(fmu, settings, parameters, pantograph)
     about = f"{100 * SHARE:g} % of {len(draws)} draws of {source.name}"

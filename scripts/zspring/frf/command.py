@@ -59,7 +59,8 @@ STANDARD = FrfSettings()
     "--quantity",
     of=QUANTITIES,
     default="receptance",
-    help="What to draw: receptance H = -Z/F or dynamic stiffness 1/H.",
+    help="In what to tell and draw the response: receptance H = -Z/F, mobility, accelerance, or their inverses dynamic "
+    "stiffness, mechanical impedance, apparent mass.",
 )
 @output_option(
     described="results/frf-FRICTION-DIRECTION, and a code for the settings where they differ from the standard figure's"

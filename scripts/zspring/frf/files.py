@@ -47,7 +47,7 @@ def frf_columns(quantity: str) -> list[str]:
 
 def frf_row(point: FrfPoint, quantity: str) -> list[object]:
     """The point's values in the order of `frf_columns`; NaN where nothing was measured."""
-    value = as_quantity(point.H, quantity)
+    value = as_quantity(point.H, quantity, point.frequency)
     return [
         *(point.frequency, point.amplitude, point.displacement, point.H.real, point.H.imag),
         *(abs(value), float(phase_degrees(value, quantity)), point.periods, point.change, point.status),

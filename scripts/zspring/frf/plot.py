@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from ..bench.compare import LevelComparison
 from ..bench.points import LEFT_OUT, NOT_HELD, NOT_SETTLED, REPEATS, FrfPoint, differences
-from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
+from ..bench.responses import QUANTITIES, RESPONSES, as_quantity, phase_degrees
 from ..figures import new_figure
 from ..receptance import LinearModel
 
@@ -55,7 +55,7 @@ def frf_figure(
                 the difference is drawn as well
     levels      of a measured response: points in the colour of their amplitude, or black ones on the model's curve
     bounds      by name ("locked", "free", "linear")
-    quantity    "receptance" or "stiffness"
+    quantity    of QUANTITIES
     stroke      in m, beyond which points were left out
     """
     both = len(ways) > 1
@@ -64,7 +64,7 @@ def frf_figure(
     every = [point for points, _ in ways.values() for point in points]
     fine = np.linspace(min(p.frequency for p in every), max(p.frequency for p in every), 4001)
     for model, bound in bounds.items():
-        value = as_quantity(bound.receptance(fine), quantity)
+        value = as_quantity(bound.receptance(fine), quantity, fine)
         style = {"color": "black", "linestyle": BOUND_STYLES[model], "linewidth": 1.1, "zorder": 3}
         magnitude.semilogy(fine, np.abs(value), label=BOUND_LABELS[model], **style)
         phase.plot(fine, phase_degrees(value, quantity), **style)
@@ -75,7 +75,7 @@ def frf_figure(
         for number, (level, color) in enumerate(colors.items()):
             curve = sorted((p for p in (*points, *beside) if p.level == level), key=lambda p: p.frequency)
             frequency = np.array([p.frequency for p in curve])
-            value = as_quantity(np.array([p.H for p in curve]), quantity)
+            value = as_quantity(np.array([p.H for p in curve]), quantity, frequency)
             style = {"color": color, "linestyle": WAY_STYLES[way], "linewidth": 1.2, "marker": ".", "markersize": 3}
             style["markevery"] = [i for i, p in enumerate(curve) if p in asked]
             label = shown(level, unit) if way != "down" or not both else None
@@ -100,8 +100,8 @@ def frf_figure(
                 Line2D([], [], color="gray", ls="none", marker=marker, fillstyle="none", markersize=5, label=label)
             )
     magnitude.legend(handles=handles, fontsize=8, ncols=2, title=LEVELS[unit], title_fontsize=8)
-    symbol = {"receptance": "|H|, receptance", "stiffness": "|1/H|, dynamic stiffness"}[quantity]
-    magnitude.set(title=title, ylabel=f"{symbol}  [{QUANTITIES[quantity]}]")
+    name = RESPONSES[QUANTITIES[quantity]].name
+    magnitude.set(title=title, ylabel=f"{'|H|, ' * (quantity == 'receptance')}{name}  [{QUANTITIES[quantity]}]")
     phase.set(ylabel="phase  [deg]")
     phase.yaxis.set_major_locator(MultipleLocator(45))
     for axes in rest:
@@ -130,7 +130,7 @@ def _draw_measured(
     if not near:
         curves.append((level.computed, f"model, {label}", {"color": "black", "linewidth": 0.8}))
     for H, name, style in curves:
-        value = as_quantity(H, quantity)
+        value = as_quantity(H, quantity, frequency)
         magnitude.semilogy(frequency, np.abs(value), label=name, zorder=4, **style)
         phase.plot(frequency, phase_degrees(value, quantity), zorder=4, **style)
 

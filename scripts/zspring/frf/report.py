@@ -9,6 +9,7 @@ import numpy as np
 from ..bench.measure import BENCH_PARAMETERS
 from ..bench.points import FAILED, NOT_HELD, NOT_SETTLED, REPEATS, FrfPoint, FrfSettings, differences
 from ..bench.refine import JUMP, Extreme
+from ..bench.responses import QUANTITIES, RESPONSES
 from ..fmu import Fmu
 from ..heads import file_head, model_note, now, synthetic_note
 from ..receptance import LinearModel
@@ -34,7 +35,7 @@ def frf_head(fmu: Fmu, settings: FrfSettings, parameters: Mapping[str, Value], q
     own = {
         "date": now(),
         "SHA-256 of the FMU": fmu.sha256,
-        "quantity": "receptance H" if quantity == "receptance" else "dynamic stiffness 1/H",
+        "quantity": RESPONSES[QUANTITIES[quantity]].name,
         **settings.described(),
     }
     return file_head(fmu, parameters, own, but_not=BENCH_PARAMETERS)

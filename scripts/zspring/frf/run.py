@@ -33,7 +33,7 @@ class Wanted:
     """What is wanted of a figure beside its points.
 
     pantograph      in words, for the title
-    quantity        "receptance" or "stiffness"
+    quantity        of QUANTITIES
     suffix          of the figure, "png" or "svg"
     jobs            number of sweeps at a time
     error_estimate  the points at half the internal step, too

@@ -160,9 +160,9 @@ class Problem:
                     error = np.log(H / curve.H)
                 else:
                     quantity = self.settings.quantity
-                    wanted = as_quantity(curve.H, quantity)
+                    wanted = as_quantity(curve.H, quantity, curve.frequency)
                     scale = np.sqrt(np.mean(np.abs(wanted) ** 2))
-                    error = (as_quantity(H, quantity) - wanted) / scale
+                    error = (as_quantity(H, quantity, curve.frequency) - wanted) / scale
             off = _finite(np.column_stack([error.real, error.imag]), PENALTY)
             if self.is_weighted and curve.error is not None:
                 off /= np.hypot(curve.error, SETTLED.tolerance)  # the model's own scatter

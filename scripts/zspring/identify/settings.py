@@ -13,6 +13,7 @@ from ..bench.conditions import Conditions, read_conditions
 from ..bench.curves import Source
 from ..bench.fmu_bench import HARMONICS
 from ..bench.measure import BENCH_PARAMETERS
+from ..bench.responses import QUANTITIES
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..parameter_sets import ACCURATE_STEP, PANTOGRAPHS, chosen_set
@@ -149,7 +150,9 @@ class Settings(Table):
     parameter_set: Annotated[str, set_name(PANTOGRAPHS)] = Field("", alias="parameters")
     band: Band = ALL_FREQUENCIES
     error: Literal["log", "linear"] = "log"
-    quantity: Literal["receptance", "stiffness"] = "receptance"
+    quantity: Annotated[str, fitting(f"must be one of {', '.join(QUANTITIES)}", lambda q: q in QUANTITIES)] = (
+        "receptance"
+    )
     weights: Literal["errors", "equal"] | None = Field(None, description="None: errors where all files tell them")
     harmonics: Orders = ()
     direction: Literal["up", "down", "rest", "file"] | None = Field(None, description="None: as the files have it")
