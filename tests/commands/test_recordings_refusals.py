@@ -98,6 +98,32 @@ def test_what_can_be_used_is_used_and_marked(tmp_path, name, change, message, ke
     assert len(table(tmp_path / "out" / "holds.csv")) == 4
 
 
+def test_a_limit_is_found_by_how_often_it_comes(tmp_path):
+    """At 60 Hz a clipped crest has one or two values, too few to stand still; without noise values repeat."""
+    random = np.random.default_rng(4)
+    coarse = shaken((2.1, 3.3), rate=60.0, periods=20)
+    force = coarse.force + 0.01 * random.standard_normal(coarse.time.size)
+    columns = {"time__s": coarse.time, "position__m": coarse.displacement}
+    clean = written(tmp_path, BASE, **columns, force__N=coarse.force)
+    assert_linear(found(clean)[0], (2.1, 3.3))
+    limited = np.minimum(force, np.quantile(force, 0.9))
+    (tmp_path / "b").mkdir()
+    settings = written(tmp_path / "b", BASE, **columns, force__N=limited)
+    status, _, err = in_process("recordings", settings, "--output", tmp_path / "out b")
+    assert status == 1 and err.count("left out: force clipped") == 2
+
+
+def test_a_burst_does_not_tilt_what_is_beside_it(tmp_path):
+    """Half of the periods have a disturbance that is a thousand times the force; H of the others is exact."""
+    random = np.random.default_rng(6)
+    long = shaken((3.3,), periods=30)
+    burst = 3e3 * random.standard_normal(long.time.size) * ((long.time > 2.5) & (long.time < 6.0))
+    columns = {"time__s": long.time, "position__m": long.displacement, "force__N": long.force + burst}
+    curves, _, err = found(written(tmp_path, BASE, **columns))
+    assert_linear(curves, (3.3,))
+    assert re.search(r"marked: 1[23] of \d+ periods disturbed", err), err
+
+
 def test_a_hold_that_is_too_short_for_its_noise_is_left_out(tmp_path):
     random = np.random.default_rng(3)
     noisy = RECORD.force + np.where(TIME > ENDS[2], 40.0, 0.001) * random.standard_normal(TIME.size)

@@ -13,8 +13,17 @@ import numpy as np
 from .points import Point
 from .settings import Settings
 from .signals import Record
-from .sine import FEWEST_PERIODS, HARMONICS, Periods, error_of_mean, errors_of_means, harmonics_within, without_trend
-from .steady import repeats_after, settled, undisturbed, usual
+from .sine import (
+    FEWEST_PERIODS,
+    HARMONICS,
+    Periods,
+    error_of_mean,
+    errors_of_means,
+    harmonics_within,
+    undisturbed,
+    without_trend,
+)
+from .steady import repeats_after, settled, usual
 from .track import Stretch
 from .window import Window, located
 
@@ -30,21 +39,22 @@ def evaluate(record: Record, hold: Stretch, settings: Settings, swept: bool = Fa
     """
     point = Point(record.path.name, record.level, hold.begin, hold.end, hold.frequency, 0)
     harmonics = harmonics_within(record.rate, hold.frequency)
-    if harmonics < 1:
+    if harmonics < 2:
         return replace(point, left_out=f"{record.rate:g} Hz are too few samples for it")
     name, motion = next(iter(record.motions.items()))
     window = located(record, hold, motion, harmonics)
     force, moved = (window.periods(signal) for signal in (record.force, motion))
     count = moved.residual.size
     point = replace(point, frequency=window.frequency, found=count)
-    good = undisturbed(force, record.force.step) & undisturbed(moved, motion.step) & usual(moved.amplitude[:, 0])
+    good = (
+        undisturbed(force.residual, record.force.step)
+        & undisturbed(moved.residual, motion.step)
+        & usual(moved.amplitude[:, 0])
+    )
     good[: 0 if swept else math.ceil(settings.sweep.settle)] = False
     kept = np.flatnonzero(good)
     skipped, change = (0, 0.0) if swept else settled(force.amplitude[kept, 0] / moved.amplitude[kept, 0])
     kept = kept[skipped:]
-    for channel, found in (("force", force), (name, moved)):
-        if kept.size and not np.any(np.abs(found.amplitude[kept, 0]) > 0):
-            return replace(point, left_out=f"{channel} does not move")
     clipped = [channel for channel, found in (("force", force), (name, moved)) if found.clipped]
     if kept.size < FEWEST_PERIODS + swept:
         return replace(point, periods=kept.size, left_out=_why(kept.size, clipped, force, moved, name))

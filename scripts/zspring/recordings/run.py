@@ -100,7 +100,9 @@ def holds_in(record: Record, settings: Settings) -> tuple[list[Point], list[str]
 def _filled(values: np.ndarray) -> np.ndarray:
     """Values (n,) with straight lines over what is missing."""
     there = np.isfinite(values)
-    return values if there.all() else np.interp(np.arange(values.size), np.flatnonzero(there), values[there])
+    if there.all() or not there.any():
+        return np.nan_to_num(values)
+    return np.interp(np.arange(values.size), np.flatnonzero(there), values[there])
 
 
 def _write_responses(folder: Path, head: dict[str, str], groups: Sequence[Group], title: str, uff: bool) -> list[Path]:

@@ -18,6 +18,8 @@ from .settings import MOTIONS, File, Sensor, Settings
 
 TIME_NAMES = ("time", "t", "x value")
 EQUAL_RATE = 1e-6  # relative, as files round it
+NEAR_END = 0.05  # of all values' range: what is compared with the end itself
+OFTEN = 5  # times as often as it would be: the end is a limit
 FLAT = 3  # times the values alike at an end that a sine has anyway
 
 
@@ -31,20 +33,16 @@ class Signal:
     beyond: np.ndarray  # (n,) whether the channel's limit is reached
 
     def without_flat(self, part: slice, rate: float, frequency: float) -> tuple[np.ndarray, bool]:
-        """The values of a part with NaN for those that stand still at its ends, and whether most periods have such.
+        """The values of a part with NaN for those that stand still, and whether they do in most periods.
 
-        These are clipped; a few are where a plug was loose. At its crest a sine of amplitude A stays within one step
-        for sqrt(2 step / A) / (pi f).
+        Then they are clipped; once, a plug was loose. At its crest a sine of amplitude A stays within one step for
+        sqrt(2 step / A) / (pi f).
         """
         values, flat = self.values[part], self.beyond[part].copy()
-        if not np.isfinite(values).any():
-            return values, False
-        low, high = np.nanmin(values), np.nanmax(values)
-        if low < high:
-            crest = rate / (np.pi * frequency) * np.sqrt(4 * self.step / (high - low))
-            for end in (low, high):
-                for first, last in _runs(np.abs(values - end) <= self.step / 2):
-                    flat[first:last] |= last - first > FLAT * (1 + crest)
+        amplitude = (np.nanmax(values) - np.nanmin(values)) / 2 if np.isfinite(values).any() else 0.0
+        crest = rate / (np.pi * frequency) * np.sqrt(2 * self.step / amplitude) if amplitude > 0 else 0.0
+        for first, last in _runs(np.abs(np.diff(values)) <= self.step / 2):
+            flat[first : last + 1] |= last - first >= FLAT * (1 + crest)
         clipped = len(_runs(flat)) >= max(3, 0.5 * values.size * frequency / rate)
         return np.where(flat, np.nan, values), clipped
 
@@ -165,5 +163,22 @@ def _signal(where: str, sensor: Sensor, values: np.ndarray, factor: float) -> Si
         raise ZSpringError(f"{where}: {sensor.named} is {distinct[0]:g} all the time: is the sensor connected?")
     steps = np.diff(distinct)
     step = float(steps[steps > 1e-9 * (distinct[-1] - distinct[0])].min())
-    beyond = np.abs(values) >= (np.inf if sensor.limit is None else sensor.limit * (1 - 1e-6))
+    if sensor.limit is None:
+        ends = [end for end, inward in ((-1, -1), (0, 1)) if _is_limit(values, distinct[end::inward], step)]
+        beyond = np.isin(values, [distinct[end] for end in ends])
+    else:
+        beyond = np.abs(values) >= sensor.limit * (1 - 1e-6)
     return Signal(factor * values, sensor.delay, abs(factor) * step, beyond)
+
+
+def _is_limit(values: np.ndarray, distinct: np.ndarray, step: float) -> bool:
+    """Whether the first of the distinct values (m,), at an end of all values, is a limit: it comes far too often.
+
+    Of the values that a sine has within n steps of its end, one in sqrt(n) is at the end. In records without noise all
+    values come as often as there are periods.
+    """
+    width = NEAR_END * np.ptp(distinct)
+    near = np.count_nonzero(np.abs(values - distinct[0]) < width)
+    beside = max(1, np.count_nonzero(np.abs(distinct - distinct[0]) < width) - 1)
+    at_end = np.count_nonzero(values == distinct[0])
+    return at_end > OFTEN * max(1.0, near / np.sqrt(max(width / step, 1.0)), (near - at_end) / beside)

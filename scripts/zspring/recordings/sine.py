@@ -14,6 +14,7 @@ import numpy as np
 HARMONICS = 7
 MOST_ROUNDS = 30
 FEWEST_PERIODS = 5  # whose scatter tells an error
+DISTURBED = 3.0  # times the usual residual of a period, or that part of it
 
 
 def basis(time: np.ndarray, frequency: float, harmonics: int) -> np.ndarray:
@@ -71,7 +72,7 @@ def by_period(time: np.ndarray, values: np.ndarray, frequency: float, harmonics:
 
     values  (n,) with NaN for missing ones
     A drift, which within a period looks like a sine, is taken off: its slope is the usual one between the means of
-    periods that are half of their number apart.
+    undisturbed periods that are half of their number apart.
     """
     time = time - time[0]
     count = int(np.floor(time[-1] * (1 + 1 / max(time.size - 1, 1)) * frequency + 1e-9))
@@ -83,18 +84,40 @@ def by_period(time: np.ndarray, values: np.ndarray, frequency: float, harmonics:
     for m, block in enumerate(map(slice, ends, ends[1:])):
         if block.stop - block.start > columns.shape[1] and not missing[block].any():
             found[m] = solved(columns[block], both[block])
-    far = count // 2
-    slopes = (found[far:, 0, 0] - found[: count - far, 0, 0]) / (found[far:, 0, 1] - found[: count - far, 0, 1])
-    slope = float(np.nanmedian(slopes)) if far and np.isfinite(slopes).any() else 0.0
-    weights = found[..., 0] - slope * found[..., 1]
-    residual = np.full(count, np.nan)
-    for m, block in enumerate(map(slice, ends, ends[1:])):
-        if np.isfinite(weights[m, 0]):
-            rest = values[block] - slope * time[block] - columns[block] @ weights[m]
-            residual[m] = math.sqrt(float(rest @ rest) / (rest.size - columns.shape[1]))
+
+    def residuals(slope: float) -> tuple[np.ndarray, np.ndarray]:
+        weights, rms = found[..., 0] - slope * found[..., 1], np.full(count, np.nan)
+        for m, block in enumerate(map(slice, ends, ends[1:])):
+            if np.isfinite(weights[m, 0]):
+                rest = values[block] - slope * time[block] - columns[block] @ weights[m]
+                rms[m] = math.sqrt(float(rest @ rest) / (rest.size - columns.shape[1]))
+        return weights, rms
+
+    slope = _slope(found[undisturbed(residuals(0.0)[1])][:, 0])
+    weights, residual = residuals(slope)
     amplitude = weights[:, 1 : harmonics + 1] + 1j * weights[:, harmonics + 1 :]
     mean = float(np.nanmedian(found[:, 0, 0])) if np.isfinite(found).any() else math.nan
     return Periods(amplitude, residual, mean, slope)
+
+
+def undisturbed(residual: np.ndarray, floor: float = 0.0) -> np.ndarray:
+    """Which periods (M,) have the usual residual: missing values, dropouts, knocks and dead channels have not.
+
+    floor   rms that rounding alone makes
+    """
+    there = np.isfinite(residual)
+    if not there.any():
+        return there
+    usual = np.median(residual[there])
+    with np.errstate(invalid="ignore"):
+        return (residual <= DISTURBED * max(usual, floor)) & (residual >= usual / DISTURBED - floor)
+
+
+def _slope(means: np.ndarray) -> float:
+    """The usual slope between values and times (M, 2) that are half of their number apart."""
+    far = len(means) // 2
+    steps = means[far:] - means[: len(means) - far]
+    return float(np.median(steps[:, 0] / steps[:, 1])) if far else 0.0
 
 
 def error_of_mean(values: np.ndarray, trend: bool = False) -> float:

@@ -1,12 +1,11 @@
-"""Which periods of a hold count: undisturbed, with the usual motion, and settled; and whether they are all alike."""
+"""Which periods of a hold count: with the usual motion, and settled; and whether they are all alike."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from .sine import FEWEST_PERIODS, Periods, by_period, errors_of_means
+from .sine import FEWEST_PERIODS, by_period, errors_of_means
 
-DISTURBED = 3.0  # times the usual residual of a period, or that part of it
 AMPLITUDE_OFF = 0.10  # relative distance of a period's motion from the usual one
 OUTLYING = 6.0  # times the median distance from the middle
 UNSTEADY = 6.0  # distance of the last third of the periods from the first, in errors
@@ -14,19 +13,6 @@ SLIGHT = 1e-3  # relative change that counts for nothing
 REPEATS = (2, 3, 4)  # periods after which a response may repeat
 SUBHARMONIC = 0.01  # of the fundamental: less is not told
 CLEAR = 8.0  # standard errors, of one in some dozens of components
-
-
-def undisturbed(found: Periods, floor: float) -> np.ndarray:
-    """Which periods (M,) have values and the usual residual: dropouts, knocks and dead channels have not.
-
-    floor   rms that rounding alone makes
-    """
-    there = np.isfinite(found.residual)
-    if not there.any():
-        return there
-    usual = np.median(found.residual[there])
-    with np.errstate(invalid="ignore"):
-        return (found.residual <= DISTURBED * max(usual, floor)) & (found.residual >= usual / DISTURBED - floor)
 
 
 def usual(amplitude: np.ndarray) -> np.ndarray:
@@ -72,7 +58,7 @@ def repeats_after(time: np.ndarray, values: np.ndarray, frequency: float, harmon
     blocks of so many periods, its scatter; too few of them tell none.
     """
     found = 1, 0.0
-    for repeat in REPEATS:
+    for repeat in REPEATS if harmonics > 1 else ():
         amplitude = by_period(time, values, frequency / repeat, min(harmonics, 3) * repeat).amplitude
         amplitude = amplitude[np.isfinite(amplitude[:, 0])]
         if len(amplitude) < FEWEST_PERIODS:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .signals import Record, Signal
-from .sine import Periods, by_period, fit_frequency
-from .steady import undisturbed, usual
+from .sine import Periods, by_period, fit_frequency, undisturbed
+from .steady import usual
 from .track import Stretch
 
 
@@ -68,7 +68,7 @@ def located(record: Record, hold: Stretch, motion: Signal, harmonics: int) -> Wi
             break
         window = replace(window, frequency=fit_frequency(time, values, window.frequency, harmonics))
         found = window.periods(motion)
-        good = np.flatnonzero(undisturbed(found, motion.step) & usual(found.amplitude[:, 0]))
+        good = np.flatnonzero(undisturbed(found.residual, motion.step) & usual(found.amplitude[:, 0]))
         if good.size < 2:
             break
         begin, end = window.begin + np.array([good[0], good[-1] + 1]) / window.frequency
