@@ -120,6 +120,39 @@ def test_a_sweep_with_the_force_held_goes_on_from_a_saved_state(own_fmu, through
     assert [p.H for p, _ in rest] == [p.H for p, _ in whole[1:]]
 
 
+class Jumping:
+    """A bench whose force is that of 1 N s2/m, and twice as much from 1.2 m/s2 on."""
+
+    def __init__(self):
+        self.instance, self.harmonics, self.change, self.acceleration, self.tried = self, (), 0.0, 0.0, []
+
+    def get(self, names):
+        return [{"m1": 10.0}.get(name, 0.0) for name in names]
+
+    def start(self, _frequency, acceleration):
+        assert acceleration == 0
+
+    def tune(self, frequency, acceleration):
+        force = acceleration if acceleration < 1.2 else 2 * acceleration
+        self.tried.append(force)
+        self.H, self.periods = complex(acceleration / (2 * np.pi * frequency) ** 2 / force), 0
+
+    def run(self, periods):
+        self.periods += periods
+
+    def save(self):
+        return {}
+
+
+def test_a_point_at_a_jump_is_the_nearest_state_and_tells_both_forces():
+    bench, settings = Jumping(), FrfSettings((1.5,), (5.0,), control="force")
+    ((point, _),) = run_sweep(bench, Sweep(1.5, (5.0,)), settings, GO_ON)
+    assert point.status == "not held: the force jumps from 1.2 to 2.4 N"
+    assert point.force == pytest.approx(1.2, rel=1e-3) and point.amplitude == pytest.approx(1.2, rel=1e-3)
+    assert point.place == (1.5, 5.0) and point.label == "1.5 N"
+    assert bench.tried[0] == pytest.approx(0.15)  # as if all masses moved alike
+
+
 def test_a_stopped_point_is_none(own_fmu):
     stop = threading.Event()
     stop.set()

@@ -136,9 +136,11 @@ def _hold(
     if why == STROKE:
         point = FrfPoint(point.amplitude, frequency, LEFT_OUT)
     elif why:
-        ends = sorted(p.force for p in tries[-2:])
         point = min(tries, key=lambda p: abs(math.log(p.force / level)))
-        reason = f"the force jumps from {ends[0]:.3g} to {ends[1]:.3g} N" if why == JUMPS else f"{len(tries)} tries"
+        reason = f"{len(tries)} tries"
+        if why == JUMPS:
+            below, above = ([p.force for p in tries if (p.force > level) is larger][-1] for larger in (False, True))
+            reason = f"the force jumps from {below:.3g} to {above:.3g} N"
         point = replace(point, status=f"{NOT_HELD}: {reason}")
     elif len(tries) > 1 and not point.status.startswith(FAILED):  # what is left of the way to the level, in H
         by_force = abs(cmath.log(point.H / tries[-2].H)) / abs(math.log(point.force / tries[-2].force))

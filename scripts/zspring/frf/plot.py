@@ -31,7 +31,7 @@ WAY_STYLES = {"up": "-", "down": "--", "rest": "-"}
 MARKS = {
     NOT_SETTLED: ("o", "not settled"),
     REPEATS: ("D", "repeats only after several periods"),
-    NOT_HELD: ("s", "force not held: it jumps"),
+    NOT_HELD: ("s", "force not held"),
 }
 LEVELS = {
     "m/s2": "peak acceleration of the head",
