@@ -16,7 +16,8 @@ from ..variables import Value
 from .conditions import FILE_ORDER
 from .curves import Curve
 from .fmu_bench import HARMONICS, FmuBench
-from .measure import FAILED, FrfSettings, settle
+from .measure import settle
+from .points import FAILED, FrfSettings
 from .static_test import StaticTest
 
 Periods = tuple[int, ...]  # for each point of a curve

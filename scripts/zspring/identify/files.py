@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from datetime import datetime, timezone
 from pathlib import Path
 
-from ..bench.measure import FrfSettings
+from ..bench.points import FrfSettings
 from ..draws import write_draws
 from ..fmu import Fmu
 from ..heads import file_head
