@@ -57,7 +57,7 @@ def evaluate(record: Record, hold: Stretch, settings: Settings, swept: bool = Fa
     kept = kept[skipped:]
     clipped = [channel for channel, found in (("force", force), (name, moved)) if found.clipped]
     if kept.size < FEWEST_PERIODS + swept:
-        return replace(point, periods=kept.size, left_out=_why(kept.size, clipped, force, moved, name))
+        return replace(point, periods=kept.size, left_out=_why(kept.size, clipped, force, moved, name, swept))
     marks = []
     if (disturbed := count - kept[0] - kept.size) > 0.1 * count:
         marks.append(f"{disturbed} of {count} periods disturbed")
@@ -68,14 +68,14 @@ def evaluate(record: Record, hold: Stretch, settings: Settings, swept: bool = Fa
     return _measured(point, window, settings, kept, force, moved, tuple(marks), swept)
 
 
-def _why(count: int, clipped: list[str], force: Periods, moved: Periods, name: str) -> str:
+def _why(count: int, clipped: list[str], force: Periods, moved: Periods, name: str, swept: bool) -> str:
     """Why there are too few periods."""
     if clipped:
         return f"{' and '.join(clipped)} clipped"
     for channel, found in (("force", force), (name, moved)):
         if np.isnan(found.residual).sum() > found.residual.size / 2:
             return f"{channel} has missing values"
-    return f"{count} steady periods, {FEWEST_PERIODS} at least are needed"
+    return f"{count} steady periods, {FEWEST_PERIODS + swept} at least are needed"
 
 
 def _measured(
@@ -107,12 +107,12 @@ def _measured(
     systematic = math.hypot(rounding, control_error(motions / abs(z), forces / abs(f)))
     begin, end = window.begin + np.array([kept[0], kept[-1] + 1]) / window.frequency
     repeat, size = repeats_after(*window.values(record.force, begin, end), window.frequency, window.harmonics)
-    agreement = complex(math.nan, math.nan)
+    agreement, agreement_error = complex(math.nan, math.nan), math.nan
     if others:
         second = window.periods(others[0][1]).amplitude[kept, 0] * window.to_displacement(others[0][0])[0]
-        second = second[np.isfinite(second)]
-        if second.size:
-            agreement = complex(second.mean() / z if name == "displacement" else z / second.mean())
+        agreement, agreement_error = _ratio(second, Z[:, 0]) if name == "displacement" else _ratio(Z[:, 0], second)
+    amplitude = without_trend(np.abs(Z[:, 0])) if swept else np.abs(Z[:, 0])
+    of_noise = motion_noise * math.sqrt(2 / per_period) * window.to_displacement(name)[0]
 
     def padded(values: np.ndarray) -> np.ndarray:
         return np.concatenate([values, np.full(HARMONICS - values.size, np.nan)])
@@ -126,7 +126,7 @@ def _measured(
         magnitude_error=math.hypot(error_of_mean(relative.real, swept), systematic),
         phase_error=math.hypot(error_of_mean(relative.imag, swept), systematic),
         acceleration=float(abs(z) * omega**2),
-        scatter=float((without_trend(np.abs(Z[:, 0])) if swept else np.abs(Z[:, 0])).std(ddof=1) / abs(z)),
+        scatter=math.sqrt(max(float(amplitude.var(ddof=1)) - of_noise**2, 0)) / abs(z),
         force=padded(np.abs(F.mean(0))),
         force_error=padded(errors_of_means(F)),
         motion=padded(np.abs(Z.mean(0))),
@@ -138,6 +138,7 @@ def _measured(
         loss=float(loss.mean()),
         loss_error=error_of_mean(loss, swept),
         agreement=agreement,
+        agreement_error=agreement_error,
         subharmonic=repeat,
     )
     return judged(replace(measured, marks=(*marks, *([_repeats(repeat, size)] if repeat > 1 else []))), settings)
@@ -145,6 +146,16 @@ def _measured(
 
 def _repeats(periods: int, size: float) -> str:
     return f"the force repeats only after {periods} periods ({100 * size:.1f} % of the fundamental)"
+
+
+def _ratio(one: np.ndarray, other: np.ndarray) -> tuple[complex, float]:
+    """Ratio of the means of complex values (M,), NaN for missing ones, and its standard error, relative."""
+    there = np.isfinite(one) & np.isfinite(other)
+    one, other = one[there], other[there]
+    if one.size < FEWEST_PERIODS:
+        return complex(math.nan, math.nan), math.nan
+    apart = one / one.mean() - other / other.mean()
+    return complex(one.mean() / other.mean()), math.hypot(error_of_mean(apart.real), error_of_mean(apart.imag))
 
 
 def _clear(amplitudes: np.ndarray) -> np.ndarray:
@@ -196,7 +207,7 @@ def judged(point: Point, settings: Settings) -> Point:
             marks.append(shown)
     if point.scatter > HUNTING:
         marks.append(f"amplitude scatters by {100 * point.scatter:.2g} %")
-    if abs(point.agreement - 1) > INCONSISTENT:
+    if abs(point.agreement - 1) > max(INCONSISTENT, 3 * point.agreement_error):
         size, turn = abs(point.agreement) - 1, math.degrees(np.angle(point.agreement))
         marks.append(f"displacement from acceleration off by {100 * size:+.1f} %, {turn:+.1f} deg")
     return replace(point, marks=tuple(marks), left_out=why)

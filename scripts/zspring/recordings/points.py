@@ -28,7 +28,7 @@ class Point:
     magnitude_error: float = math.nan  # relative, standard error
     phase_error: float = math.nan  # rad, standard error
     acceleration: float = math.nan  # m/s2, peak
-    scatter: float = math.nan  # of the motion's amplitude from period to period, relative
+    scatter: float = math.nan  # of the motion's amplitude from period to period, relative, beyond its noise
     force: np.ndarray = field(default_factory=lambda: np.full(HARMONICS, np.nan))  # N, peaks
     force_error: np.ndarray = field(default_factory=lambda: np.full(HARMONICS, np.nan))
     motion: np.ndarray = field(default_factory=lambda: np.full(HARMONICS, np.nan))  # m, peaks
@@ -40,6 +40,7 @@ class Point:
     loss: float = math.nan  # J, energy per cycle
     loss_error: float = math.nan
     agreement: complex = complex(math.nan, math.nan)  # displacement from acceleration over that measured
+    agreement_error: float = math.nan  # its standard error
     subharmonic: int = 1  # periods after which the force repeats
     marks: tuple[str, ...] = ()  # what makes it less than it seems
     left_out: str = ""  # why it is not used

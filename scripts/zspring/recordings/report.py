@@ -42,10 +42,10 @@ def _range(values: Sequence[float], digits: int) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def count_line(points: Sequence[Point]) -> str:
-    """How many holds there are, and what became of them."""
+def count_line(points: Sequence[Point], what: str) -> str:
+    """How many there are of what they are, and what became of them."""
     out, marked = sum(bool(p.left_out) for p in points), sum(bool(p.marks) and not p.left_out for p in points)
-    text = f"{len(points)} holds: {len(points) - out} used"
+    text = f"{len(points)} {what}: {len(points) - out} used"
     return text + (f", {marked} of them marked" if marked else "") + (f", {out} left out" if out else "")
 
 

@@ -57,7 +57,8 @@ def run_recordings(settings: Settings, path: Path, folder: Path, suffix: str, uf
     paths = [write_holds(folder / "holds.csv", head, points)]
     if shown is None:
         raise ZSpringError(f"no hold can be used: see {paths[0]}")
-    for line in (report.count_line(points), *report.level_table(groups), *report.up_against_down(groups)):
+    what = "holds" if settings.sweep.kind == "holds" else "stretches"
+    for line in (report.count_line(points, what), *report.level_table(groups), *report.up_against_down(groups)):
         print(line)
     for line in report.remarks(groups, settings.static_force):
         print(line, file=sys.stderr)

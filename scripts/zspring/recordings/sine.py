@@ -14,7 +14,8 @@ import numpy as np
 HARMONICS = 7
 MOST_ROUNDS = 30
 FEWEST_PERIODS = 5  # whose scatter tells an error
-DISTURBED = 3.0  # times the usual residual of a period, or that part of it
+DISTURBED = 3.0  # times the usual residual of a period
+DEAD = 0.1  # times the same
 
 
 def basis(time: np.ndarray, frequency: float, harmonics: int) -> np.ndarray:
@@ -25,8 +26,8 @@ def basis(time: np.ndarray, frequency: float, harmonics: int) -> np.ndarray:
 
 
 def harmonics_within(rate: float, frequency: float) -> int:
-    """How many harmonics a sampling rate in Hz leaves, at most HARMONICS; 0 for a frequency that it cannot tell."""
-    return int(min(HARMONICS, 0.45 * rate / frequency))
+    """How many harmonics a sampling rate in Hz tells, at most HARMONICS, with a third of the values left for noise."""
+    return int(min(HARMONICS, 0.3 * rate / frequency))
 
 
 def fit_frequency(time: np.ndarray, values: np.ndarray, guess: float, harmonics: int) -> float:
@@ -110,7 +111,7 @@ def undisturbed(residual: np.ndarray, floor: float = 0.0) -> np.ndarray:
         return there
     usual = np.median(residual[there])
     with np.errstate(invalid="ignore"):
-        return (residual <= DISTURBED * max(usual, floor)) & (residual >= usual / DISTURBED - floor)
+        return (residual <= DISTURBED * max(usual, floor)) & (residual >= DEAD * usual - floor)
 
 
 def _slope(means: np.ndarray) -> float:
