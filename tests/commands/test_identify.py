@@ -19,7 +19,7 @@ from zspring.bench.curves import Curve
 from zspring.bench.model import BenchModel
 from zspring.bench.static_test import StaticTest
 from zspring.fmu import Fmu
-from zspring.identify import run
+from zspring.identify import run, stages
 from zspring.identify.fit import fit
 from zspring.identify.problem import Problem, ThreeMassModel, ZSpringModel
 from zspring.identify.report import doubts
@@ -307,7 +307,7 @@ def test_ctrl_c_in_the_last_jacobian_writes_nothing_and_keeps_the_search(tmp_pat
     with Fmu() as model:
         settings = read_settings(path, model)
         with monkeypatch.context() as patched:
-            patched.setattr(run, "fit", fit_until_ctrl_c)
+            patched.setattr(stages, "fit", fit_until_ctrl_c)
             with pytest.raises(Interrupted, match="the same command goes on after the search"):
                 run.identify(model, settings, path, out, "png", JOBS)
         assert sorted(path.name for path in out.iterdir()) == ["identify.log", "search.partial.csv"]

@@ -23,6 +23,7 @@ import click
 import numpy as np
 from tqdm import tqdm
 
+from identification import identification
 from probe import probe_folder
 from zspring.bench.fixed_work import PERIODS, Work, figure_points, run_points
 from zspring.bench.points import FrfSettings
@@ -173,7 +174,7 @@ def work_of(fmu: Fmu, settings: Iterable[str]) -> Work:
 @click.option("--reference-step", default=5e-5, show_default=True, help="s, of the solution taken as exact.")
 @click.option("--against", "older", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="An older FMU.")
 def main(reference_step: float, older: Path | None) -> None:
-    """Print speed, Newton's work and accuracy over the standard figure, and the speed of the line."""
+    """Print speed, Newton's work and accuracy over the standard figure, the speed of the line, what a fit costs."""
     if older:
         with Fmu(older) as fmu:
             against(fmu)
@@ -183,6 +184,7 @@ def main(reference_step: float, older: Path | None) -> None:
         newton(instance)
         accuracy(instance, reference_step)
         line(fmu)
+        identification(fmu)
 
 
 if __name__ == "__main__":
