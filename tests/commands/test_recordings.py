@@ -83,6 +83,22 @@ def test_harmonics_distortion_and_loss_are_those_of_the_record(tmp_path):
         assert float(row["loss [J]"]) == pytest.approx(loss, rel=1e-3)
 
 
+def test_a_harmonic_that_the_motion_makes_is_within_its_error(tmp_path):
+    """Of a linear pantograph, whose force has none of its own: what is found is dynamic stiffness times motion.
+
+    At 2 and 4 Hz the stiffness at the third harmonic is that of the points at 6 and 12 Hz; above, inertia makes it.
+    """
+    frequencies = (2.0, 4.0, 6.0, 12.0)
+    record = shaken(frequencies, harmonics={3: 0.005})
+    settings = written(tmp_path, BASE, time__s=record.time, force__N=record.force, position__m=record.displacement)
+    found(settings)
+    rows = table(tmp_path / "out" / "frf.csv")
+    ratios = [float(row["harmonic_3 [N]"]) / float(row["harmonic_3_error [N]"]) for row in rows]
+    np.testing.assert_allclose(ratios[:2], np.sqrt(2), rtol=1e-3)
+    expected = np.sqrt(2) * abs(LINEAR.dynamic_stiffness(36.0)) / 9 / abs(LINEAR.dynamic_stiffness(12.0))
+    assert ratios[3] == pytest.approx(expected, rel=1e-3)
+
+
 def test_harmonics_beyond_the_sampling_rate_are_not_told(tmp_path):
     """At 40 Hz a drive of 5.2 Hz has two harmonics; the others are empty cells, which `identify` reads."""
     record = shaken(FOUR[1:3], rate=40.0, periods=30)

@@ -74,8 +74,28 @@ def grouped(points: Sequence[Point], direction: str | None) -> list[Group]:
             ways = [direction] * len(own) if direction else _ways([point.frequency for point in own])
             for point, way in zip(own, ways):
                 found.setdefault((label, way), []).append(point)
-    groups = [Group(label, way, own) for (label, way), own in found.items()]
+    groups = [Group(label, way, _with_control(own)) for (label, way), own in found.items()]
     return sorted(groups, key=lambda group: float(np.median(group.curve.acceleration)))
+
+
+def _with_control(points: Sequence[Point]) -> list[Point]:
+    """Points of one level whose harmonics of the force are known no better than what those of the motion make of them.
+
+    A harmonic of the motion brings its own of the force, dynamic stiffness times motion, in a phase that is not known:
+    1 / sqrt(2) of it is a standard error. The stiffness is that of the points, between them on logarithmic scales;
+    above them it grows with the square of the frequency, as inertia does.
+    """
+    frequency = np.array([point.frequency for point in points])
+    order = np.argsort(frequency)
+    known, stiffness = np.log(frequency[order]), np.log([1 / abs(points[i].H) for i in order])
+    result = []
+    for point in points:
+        at = np.log(point.frequency * np.arange(1, point.motion.size + 1))
+        level = np.interp(at, known, stiffness) + 2 * np.maximum(at - known[-1], 0)
+        share = np.exp(level) * point.motion / np.sqrt(2)
+        share[0] = 0.0  # the fundamental, which is to move
+        result.append(replace(point, force_error=np.hypot(point.force_error, share)))
+    return result
 
 
 def _ways(frequencies: Sequence[float]) -> Sequence[str | None]:
