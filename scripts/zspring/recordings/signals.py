@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -76,11 +76,6 @@ def read_record(file: File, settings: Settings) -> Record:
     sensors: dict[str, Sensor] = {"force": settings.force, **settings.motions}
     channels = {name: summed(f"{file.path}, [{name}]", recording, sensor.channel) for name, sensor in sensors.items()}
     clock = _clock(recording, settings)
-    rates = {name: 1 / c.step for name, c in channels.items() if c.step}
-    _one_rate(file.path, rates)
-    starts = {c.start for c in channels.values() if c.step}
-    if len(starts) > 1 and np.ptp([*starts]) * max(rates.values()) > 0.01:
-        raise ZSpringError(f"{file.path}: channels begin at different times: {', '.join(f'{s:g} s' for s in starts)}")
     sizes = {name: c.values.size for name, c in {**channels, **({"time": clock} if clock else {})}.items()}
     size, remarks = min(sizes.values()), []
     if max(sizes.values()) > 1.01 * size:
@@ -88,23 +83,18 @@ def read_record(file: File, settings: Settings) -> Record:
         raise ZSpringError(f"{file.path}: numbers of values differ ({listed}): the sampling rates must be equal")
     if max(sizes.values()) > size:
         remarks.append(f"{file.path.name}: channels end at different times: cut to {size} values")
-    if clock is not None:
-        step, parts = even_times(file.path, _seconds(file.path, clock, settings)[:size])
-        begin = _seconds(file.path, clock, settings)
-        time = np.concatenate([begin[a] + step * np.arange(b - a) for a, b in parts])
-        keep = np.concatenate([np.arange(a, b) for a, b in parts])
-        lengths = np.cumsum([0, *(b - a for a, b in parts)])
-        parts = [*itertools.pairwise(map(int, lengths))]
+    if clock is None:
+        start, step = _told_beside(file.path, channels, settings.time.rate)
+        time, parts = start + step * np.arange(size), [(0, size)]
+        keep = np.arange(size)
+    else:
+        seconds = _seconds(file.path, clock, settings)[:size]
+        step, whole = even_times(file.path, seconds)
+        time = np.concatenate([seconds[a] + step * np.arange(b - a) for a, b in whole])
+        keep = np.concatenate([np.arange(a, b) for a, b in whole])
+        parts = [*itertools.pairwise(map(int, np.cumsum([0, *(b - a for a, b in whole)])))]
         if len(parts) > 1:
             remarks.append(f"{file.path.name}: {len(parts) - 1} gaps in time")
-    else:
-        told = settings.time.rate or next(iter(rates.values()), None)
-        if told is None:
-            raise ZSpringError(f"{file.path}: no time: [time] channel or rate, in Hz, tells it")
-        if settings.time.rate:
-            _one_rate(file.path, {**rates, "[time] rate": told})
-        step, time, keep = 1 / told, next(iter(starts), 0.0) + np.arange(size) / told, np.arange(size)
-        parts = [(0, size)]
 
     def signal(name: str, wanted: str, sign: int) -> Signal:
         where = f"{file.path}, [{name}]"
@@ -148,10 +138,21 @@ def _seconds(path: Path, clock: Channel, settings: Settings) -> np.ndarray:
     return clock.values * conversion(unit, "s")[1]
 
 
-def _one_rate(path: Path, rates: dict[str, float]) -> None:
-    if rates and max(rates.values()) > (1 + EQUAL_RATE) * min(rates.values()):
-        listed = ", ".join(f"{name} {rate:g} Hz" for name, rate in rates.items())
+def _told_beside(path: Path, channels: Mapping[str, Channel], rate: float | None) -> tuple[float, float]:
+    """Start and step in s that the settings tell, or the channels beside their values."""
+    told = {name: channel for name, channel in channels.items() if channel.step}
+    rates = {name: 1 / channel.step for name, channel in told.items() if channel.step}
+    if rate:
+        rates["[time] rate"] = rate
+    if not rates:
+        raise ZSpringError(f"{path}: no time: [time] channel or rate, in Hz, tells it")
+    if max(rates.values()) > (1 + EQUAL_RATE) * min(rates.values()):
+        listed = ", ".join(f"{name} {value:g} Hz" for name, value in rates.items())
         raise ZSpringError(f"{path}: sampling rates differ ({listed}): must be one")
+    starts, step = [channel.start for channel in told.values()] or [0.0], 1 / next(iter(rates.values()))
+    if np.ptp(starts) > 0.01 * step:
+        raise ZSpringError(f"{path}: channels begin at different times: {', '.join(f'{s:g} s' for s in starts)}")
+    return starts[0], step
 
 
 def _signal(where: str, sensor: Sensor, values: np.ndarray, factor: float) -> Signal:
