@@ -20,7 +20,7 @@ from zspring.identify.settings import Free, Settings
 
 TRUTH = {"zspring.k": 11500.0, "zspring.l0": 0.019, "zspring.Mf": 0.25}
 STATIC_FORCE = 90.0
-LEVELS = {0.5: (3.0, 5.0, 6.0, 7.0), 2.0: (3.0, 4.0, 5.0, 6.0, 8.0), 6.0: (4.0, 5.0, 6.0, 9.0)}  # m/s2: Hz
+LEVELS = {0.5: (5.0, 6.0, 7.0), 2.0: (4.0, 6.0), 6.0: (4.0, 5.0, 8.0)}  # m/s2: Hz
 NOISE = 0.01  # of magnitude (relative) and phase (rad)
 SEEDS, DRAWS = 30, 90
 
