@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import ZSpringError
 
 SENSES = {"specimen": 1, "contact": -1}  # a force along the displacement; one that presses the head down
+AT_END = 1e-3  # relative distance of a frequency from the end of a band that it still belongs to
 WRONG_SIGN = 'is it counted as contact force (force = "contact")?'
 
 
@@ -43,8 +44,8 @@ class Curve:
         return self.acceleration / (2 * np.pi * self.frequency) ** 2
 
     def within(self, band: tuple[float, float]) -> Curve:
-        """The points with frequencies in the band (Hz)."""
-        return self.at((self.frequency >= band[0]) & (self.frequency <= band[1]))
+        """The points with frequencies in the band (Hz), those included that a bench drove a little beside its ends."""
+        return self.at((self.frequency >= band[0] * (1 - AT_END)) & (self.frequency <= band[1] * (1 + AT_END)))
 
     def refined(self, points: int) -> Curve:
         """With as many places between two points as it takes to that many, and at least one.

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import multivariate_t
 
-from .fit import Fit
+from .fit import NOISE_FREE, Fit
 from .problem import Problem
 
 ROUNDS = 3
@@ -83,4 +83,4 @@ def _log_likelihood(problem: Problem, cost: np.ndarray, residuals: int, variance
     Gaussian; where the variance is known by the residuals alone, it is integrated out (Box and Tiao, Bayesian Inference
     in Statistical Analysis, 1973, section 2.3).
     """
-    return -cost / variance if problem.is_weighted else -residuals / 2 * np.log(cost)
+    return -cost / variance if problem.is_weighted else -residuals / 2 * np.log(np.maximum(cost, NOISE_FREE))
