@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -46,6 +47,20 @@ def read_draws(path: Path, fmu: Fmu, but_not: Sequence[str] = ()) -> list[dict[s
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
-def quantiles(values: np.ndarray) -> np.ndarray:
-    """Lower end of the interval, median and upper end (3, ...) of values (draws, ...)."""
-    return np.quantile(values, [(1 - SHARE) / 2, 0.5, (1 + SHARE) / 2], axis=0)
+def few(count: int) -> list[str]:
+    """What to say of so many draws, if they are too few for an interval."""
+    needed = math.ceil(2 / (1 - SHARE)) - 1
+    if count >= needed:
+        return []
+    return [
+        f"{count} draws are too few for {100 * SHARE:g} %: the intervals are all that they span ({needed} would do)"
+    ]
+
+
+def quantiles(values: np.ndarray, share: float = SHARE) -> np.ndarray:
+    """Lower end of the interval, median and upper end (3, ...) of values (draws, ...).
+
+    Between its ends a further draw is with a probability of `share`; of too few draws, between the smallest and the
+    largest (Hyndman, Fan, Sample quantiles in statistical packages, American Statistician 50, 1996, definition 6).
+    """
+    return np.quantile(values, [(1 - share) / 2, 0.5, (1 + share) / 2], axis=0, method="weibull")

@@ -25,7 +25,9 @@ def test_a_line_is_run_for_each_draw(tmp_path):
     """Each row is that of a run of its own with these parameters; the interval is that of the rows."""
     forces = [100.0, 110.0, 120.0, 130.0, 140.0]
     linear = ["--set", "suspension=Linear", *COUPLE]
-    out, _ = zspring(tmp_path, "couple", *linear, "--draws", draws(tmp_path / "d.csv", *forces), "--output", "all")
+    options = ["--draws", draws(tmp_path / "d.csv", *forces), "--output", "all"]
+    out, err = zspring(tmp_path, "couple", *linear, *options)
+    assert "5 draws are too few for 95 %: the intervals are all that they span (39 would do)" in err
     rows = table(tmp_path / "all/draws.csv")
     assert [(row["draw"], row["pantograph"]) for row in rows] == [(f"{i}", "1") for i in range(6)]
     alone, _ = zspring(tmp_path, "couple", *linear, "--set", "static_force=140", "--output", "one")
@@ -34,7 +36,7 @@ def test_a_line_is_run_for_each_draw(tmp_path):
     assert mean[0] == mean[3]  # as given is 120 N
     np.testing.assert_allclose(np.diff(mean[1:]), 10, rtol=0.02)
     found = re.search(r"mean force +(\S+) +(\S+) \.\. (\S+) +(\S+) +N", out)
-    low, high = np.quantile(mean[1:], [0.025, 0.975])
+    low, high = min(mean), max(mean)  # five draws tell no more
     assert found.groups() == (f"{mean[0]:.1f}", f"{low:.1f}", f"{high:.1f}", f"{high - low:.2g}")
     assert "5 draws of d.csv" in out and (tmp_path / "all/draws.png").exists()
 
@@ -80,17 +82,19 @@ def test_bands_of_a_linear_suspension_are_quantiles_of_its_receptance(tmp_path):
         (level, f) for level in ("1 m/s2", "2 m/s2") for f in ("3", "5")
     ]
     values = {name: value for name, value in PUBLISHED["DSA-380"].items() if name != "k1"}
+    half: dict[str, float] = {}
     for row in rows:
         f = float(row["frequency [Hz]"])
         H = np.array([LinearPantograph(head=k, **values).receptance(f) for k in [9430.0, *stiffness]])
-        magnitude = np.quantile(np.abs(H[1:]), [0.025, 0.5, 0.975])
+        magnitude = [f(np.abs(H[1:])) for f in (np.min, np.median, np.max)]  # nine draws tell no more
         found = [float(row[f"magnitude_{part} [m/N]"]) for part in ("low", "median", "high")]
         np.testing.assert_allclose(found, magnitude, rtol=1e-3)
         assert float(row["magnitude [m/N]"]) == pytest.approx(abs(H[0]), rel=1e-3)
         phase = np.degrees(np.angle(H[1:]))
         assert float(row["phase_median [deg]"]) == pytest.approx(np.median(phase), abs=0.05)
-    half = 50 * (magnitude[2] - magnitude[0]) / magnitude[1]
-    assert f"±{half:.2g} % at 5 Hz" in out or "at 3 Hz" in out
+        half[row["frequency [Hz]"]] = 50 * (magnitude[2] - magnitude[0]) / magnitude[1]
+    worst = max(half, key=half.__getitem__)
+    assert out.count(f"±{half[worst]:.2g} % at {worst} Hz") == 2
     assert sorted(path.name for path in (tmp_path / "bands").iterdir()) == ["bands.csv", "bands.png"]
 
 

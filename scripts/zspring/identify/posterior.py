@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import multivariate_t
 
+from ..draws import quantiles
 from .fit import NOISE_FREE, Fit
 from .problem import Problem
 
@@ -33,7 +34,7 @@ class Posterior:
 
     def interval(self, share: float) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper ends (n,) in x between which this share of the draws is, as much beyond either."""
-        low, high = np.quantile(self.x, [(1 - share) / 2, (1 + share) / 2], axis=0)
+        low, _, high = quantiles(self.x, share)
         return low, high
 
 
