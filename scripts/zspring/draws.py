@@ -24,14 +24,17 @@ def write_draws(
     return write_table(path, {**fmu.identity, **head}, columns, rows, digits=None)
 
 
-def read_draws(path: Path, fmu: Fmu, but_not: Sequence[str] = ()) -> list[dict[str, Value]]:
+def read_draws(
+    path: Path, fmu: Fmu, but_not: Sequence[str] = (), assignments: Sequence[str] = ()
+) -> list[dict[str, Value]]:
     """Parameters of each draw, in the FMU's units.
 
     but_not     parameters that the command sets itself
+    assignments NAME=VALUE, those of --set
     Raises ZSpringError, with file and column, for one that is no Real parameter, a unit of another kind, a cell that is
     no number, and a file without a row.
     """
-    table = read_table(path)
+    table, given = read_table(path), {assignment.partition("=")[0].strip() for assignment in assignments}
     columns: dict[str, list[float]] = {}
     for column in table.columns:
         name = table[column].name
@@ -39,22 +42,26 @@ def read_draws(path: Path, fmu: Fmu, but_not: Sequence[str] = ()) -> list[dict[s
             variable = fmu.variables.settable(name)
         except ZSpringError as error:
             raise ZSpringError(f"{path}: {error}") from None
-        if variable.type != "Real" or name in but_not:
+        if variable.type != "Real" or name in but_not or name.startswith("solver."):
             raise ZSpringError(f"{path}: {name}: must be a Real parameter that the command does not set itself")
+        if name in given:
+            raise ZSpringError(f"{name}: is in {path.name} and in --set: give one of them")
         columns[name] = table.numbers(column, variable.unit or "1").tolist()
     if not table.lines:
         raise ZSpringError(f"{path}: has no draw")
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
-def few(count: int) -> list[str]:
-    """What to say of so many draws, if they are too few for an interval."""
+def doubts(count: int, width: float) -> list[str]:
+    """What to say of so many draws, if they are too few for an interval, or if none has any width."""
     needed = math.ceil(2 / (1 - SHARE)) - 1
-    if count >= needed:
-        return []
-    return [
-        f"{count} draws are too few for {100 * SHARE:g} %: the intervals are all that they span ({needed} would do)"
-    ]
+    lines = []
+    if count < needed:
+        text = f"{count} draws are too few for {100 * SHARE:g} %: the intervals are all that they span"
+        lines.append(f"{text} ({needed} would do)")
+    if width == 0 and count > 1:
+        lines.append("the draws change nothing: does the pantograph have what they draw (suspension, --parameters)?")
+    return lines
 
 
 def quantiles(values: np.ndarray, share: float = SHARE) -> np.ndarray:

@@ -63,11 +63,16 @@ def test_runs_of_draws_go_on_after_an_interruption(tmp_path):
 
 @pytest.mark.parametrize(
     "text, complaint",
-    [("drive [1]\n2\n", "d.csv: drive: must be a Real parameter"), ("m1 [kg]\n-1\n", "m1 = -1 kg: must be at least")],
+    [
+        ("drive [1]\n2\n", "d.csv: drive: must be a Real parameter"),
+        ("solver.step [s]\n1e-3\n", "d.csv: solver.step: must be a Real parameter that the command does not set"),
+        ("m1 [kg]\n-1\n", "m1 = -1 kg: must be at least"),
+        ("c1 [N.s/m]\n5\n", "c1: is in d.csv and in --set: give one of them"),
+    ],
 )
 def test_draws_that_cannot_be_run_are_refused(tmp_path, text, complaint):
     (tmp_path / "d.csv").write_text(text)
-    _, err = zspring(tmp_path, "couple", *COUPLE, "--draws", "d.csv", status=1)
+    _, err = zspring(tmp_path, "couple", *COUPLE, "--set", "c1=5", "--draws", "d.csv", status=1)
     assert complaint in err and len(err.strip().splitlines()) == 1
 
 
@@ -96,6 +101,13 @@ def test_bands_of_a_linear_suspension_are_quantiles_of_its_receptance(tmp_path):
     worst = max(half, key=half.__getitem__)
     assert out.count(f"±{half[worst]:.2g} % at {worst} Hz") == 2
     assert sorted(path.name for path in (tmp_path / "bands").iterdir()) == ["bands.csv", "bands.png"]
+
+
+def test_draws_without_effect_are_told(tmp_path):
+    """k1 is nothing to the Z-spring."""
+    draws(tmp_path / "d.csv", 120, 120)
+    _, err = zspring(tmp_path, "frf", "--amplitudes", "1", "--frequencies", "5", "--draws", "d.csv", "--output", "out")
+    assert "the draws change nothing" in err
 
 
 OTHERS = ["--error-estimate"], ["--direction", "both"], ["--control", "force", "--levels", "9"]

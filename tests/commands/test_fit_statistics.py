@@ -84,7 +84,7 @@ NONE_HELD = np.zeros(2, bool)
 def test_the_standard_errors_of_a_straight_line_are_those_of_the_textbook():
     """s^2 = RSS / (5 - 2); var(a) = s^2 (1/5 + 2^2/10), var(b) = s^2 / 10, their correlation -2 / sqrt(6)."""
     rss = 12.0
-    error, correlation = statistics(problem_of(), np.array([0.5, 0.5]), LINE, NONE_HELD, rss / 2)
+    error, correlation = statistics(problem_of(), np.array([0.5, 0.5]), LINE, NONE_HELD, np.full(5, rss / 3))
     s = np.sqrt(rss / 3)
     np.testing.assert_allclose(error, 10 * s * np.sqrt([0.6, 0.1]), rtol=1e-12)  # 10: from x to the parameters
     np.testing.assert_allclose(correlation, [[1, -2 / np.sqrt(6)], [-2 / np.sqrt(6), 1]], rtol=1e-12)
@@ -92,36 +92,62 @@ def test_the_standard_errors_of_a_straight_line_are_those_of_the_textbook():
 
 def test_a_parameter_that_is_held_counts_as_known():
     """The slope alone, from the origin: s^2 = RSS / (5 - 1), var(b) = s^2 / 30."""
-    error, correlation = statistics(problem_of(), np.array([1.0, 0.5]), LINE, np.array([True, False]), 4.0)
+    error, correlation = statistics(problem_of(), np.array([1.0, 0.5]), LINE, np.array([True, False]), np.full(5, 2.0))
     assert np.isnan(error[0]) and error[1] == pytest.approx(10 * np.sqrt(2 / 30), rel=1e-12)
     assert (
         np.isnan(correlation[0]).all() and np.isnan(correlation[:, 0]).all() and correlation[1, 1] == pytest.approx(1)
     )
-    error, correlation = statistics(problem_of(), np.array([1.0, 0.0]), LINE, np.array([True, True]), 4.0)
+    error, correlation = statistics(problem_of(), np.array([1.0, 0.0]), LINE, np.array([True, True]), np.full(5, 2.0))
     assert np.isnan(error).all() and np.isnan(correlation).all()
 
 
 def test_errors_on_a_logarithmic_scale_are_those_at_the_solution():
     """From 1 to 10^4: value = 10^(4 x), d value / dx = 4 ln(10) value."""
     free = {"zspring.tau": Free(start=10, min=1, max=1e4), "m2": MASS}
-    error, _ = statistics(problem_of(free), np.array([0.25, 0.5]), LINE, NONE_HELD, 1.5)
+    error, _ = statistics(problem_of(free), np.array([0.25, 0.5]), LINE, NONE_HELD, np.ones(5))
     np.testing.assert_allclose(error, [4 * np.log(10) * 10 * np.sqrt(0.6), 10 * np.sqrt(0.1)], rtol=1e-12)
 
 
 def test_as_many_residuals_as_parameters_do_not_divide_by_zero():
-    error, _ = statistics(problem_of(), np.array([0.5, 0.5]), np.eye(2), NONE_HELD, 2.0)
+    error, _ = statistics(problem_of(), np.array([0.5, 0.5]), np.eye(2), NONE_HELD, np.full(2, 4.0))
     np.testing.assert_allclose(error, 10 * 2.0)
 
 
 def test_what_the_residuals_do_not_tell_apart_has_no_finite_error():
     """Two equal columns are one direction only; a column of zeros is none, and leaves the other's error."""
     same = np.column_stack([T, 3 * T])
-    error, correlation = statistics(problem_of(), np.array([0.5, 0.5]), same, NONE_HELD, 1.0)
+    error, correlation = statistics(problem_of(), np.array([0.5, 0.5]), same, NONE_HELD, np.ones(5))
     assert np.isinf(error).all() and np.isnan(correlation).all()
     nothing = np.column_stack([np.zeros(5), T])
-    error, correlation = statistics(problem_of(), np.array([0.5, 0.5]), nothing, NONE_HELD, 1.5)
+    error, correlation = statistics(problem_of(), np.array([0.5, 0.5]), nothing, NONE_HELD, np.ones(5))
     assert np.isinf(error[0]) and error[1] == pytest.approx(10 * np.sqrt(1 / 30))
     assert np.isnan(correlation[0, 1]) and correlation[1, 1] == pytest.approx(1)
+
+
+def test_residuals_of_two_sizes_have_standard_errors_by_each_one_s_scatter():
+    """A mean of 10 values with scatter 2 and of 40 with none, all alike in weight: var = 10 * 4 / 50^2, whatever 40 is.
+
+    Pooled, 40 values that say nothing of the scatter of the first would halve the error.
+    """
+    J = np.ones((50, 1))
+    error, _ = statistics(problem_of(["m1"]), np.array([0.5]), J, NONE_HELD[:1], np.r_[np.full(10, 4.0), np.zeros(40)])
+    assert error[0] == pytest.approx(10 * np.sqrt(40) / 50, rel=1e-12)
+
+
+def test_variances_go_by_kind_of_residual():
+    """Points that are off by chance alone in their standard errors, and a static test that is off by its own."""
+    force = np.array([3.0, -1.0, 4.0, -6.0, 10.0])
+    problem = problem_of(static=StaticTest(force, force, force), weights="errors")
+    static = Static.model_construct(path=Path("static.csv"), weight=1.0)
+    problem.settings = problem.settings.model_copy(update={"static": static})
+    problem.curves = [replace(problem.curves[0], error=ERROR)]
+    answer = Answer([MEASURED * np.exp(np.array([0.01, -0.05, 0.002]))], 1.1 * force)
+    residuals = problem.residuals(answer)
+    found = problem.variances(answer, 2)
+    np.testing.assert_array_equal(found[:6], 1.0)
+    np.testing.assert_allclose(found[6:], residuals[6:] @ residuals[6:] / (5 * (1 - 2 / 11)))
+    # In standard errors of the points, of which the median is 1 %: 10 % off are ten for each point.
+    assert residuals[6:] @ residuals[6:] == pytest.approx(3 * 10**2, rel=1e-9)
 
 
 # Residuals

@@ -362,6 +362,14 @@ def test_two_files_of_one_fit_agree(tmp_path):
         read_settings(path, model)
 
 
+def test_what_one_file_says_of_the_bench_for_another_is_told(tmp_path, capsys):
+    path = settings_file(tmp_path, SETTINGS.replace("[free]", '[[measurement]]\nfile = "b.csv"\n[free]', 1))
+    (tmp_path / "b.csv").write_text("# static_force: 120 N\n" + GOOD)
+    with Fmu() as model:
+        read_settings(path, model)
+    assert capsys.readouterr().err == "b.csv does not say friction: taken as bench.csv says\n"
+
+
 def test_the_direction_may_come_from_the_settings(tmp_path):
     for head, complaint in ((HEAD, None), (HEAD + "# direction: up\n", "says up, the settings down")):
         path = settings_file(tmp_path, f'direction = "down"\n{SETTINGS}', head)

@@ -11,7 +11,7 @@ import pytest
 from zspring.bench.curves import Curve, Harmonics, Source
 from zspring.bench.measured import read_curves
 from zspring.errors import ZSpringError
-from zspring.identify.settings import Free, Settings
+from zspring.identify.settings import Free, Settings, Static, Uncertainty
 from zspring.identify.targets import settled_targets
 
 HEAD = "frequency [Hz],amplitude [m/s2],real [m/N],imaginary [m/N]"
@@ -126,6 +126,16 @@ def test_errors_count_where_all_files_tell_them(curves, fields, weights):
         ([TOLD, BARE], {"weights": "errors"}, "1 m/s2 has none: needs the columns magnitude_error"),
         ([TOLD], {"weights": "errors", "error": "linear"}, 'needs error = "log"'),
         ([TOLD, BARE], {"weights": "equal", "harmonics": (3,)}, "harmonics: 3: 1 m/s2 has no harmonic_3"),
+        (
+            [BARE],
+            {"compare_models": True, "static": Static.model_construct(path=Path("s.csv"))},
+            r"compare_models: needs a likelihood, which \[static\] beside the points do not have",
+        ),
+        (
+            [TOLD],
+            {"weights": "equal", "harmonics": (3,), "uncertainty": Uncertainty(draws=9)},
+            "draws: needs a likelihood, which harmonics without standard errors beside the points do not have",
+        ),
         ([TOLD], {"harmonics": (3,)}, r"harmonics: 3: 2 m/s2 has no harmonic_3_error \[N\] above 0 at every point"),
     ],
 )

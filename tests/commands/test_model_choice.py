@@ -5,11 +5,19 @@ from __future__ import annotations
 import re
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from commands import receptances, zspring
+from zspring.bench.curves import Curve
+from zspring.fmu import Fmu
+from zspring.identify.choice import Candidate, choice_table, others
+from zspring.identify.fit import Fit
+from zspring.identify.problem import Answer, Problem
+from zspring.identify.settings import Free, Settings, Tie
+from zspring.variables import parse
 
 FIT = """model = "zspring"
 compare_models = true
@@ -85,3 +93,52 @@ def test_the_report_has_what_the_terminal_has_and_needs_nothing_else(tmp_path):
     assert all(source.startswith(("#", "data:")) for source in page.sources)
     assert "Friction law Regularized; weights: all points alike." in lines and "solver.step 0.002 s" in lines
     assert "zspring.L1" not in lines.split("Synthetic")[0]
+
+
+def candidate(name: str, squares: float, parameters: int, weights: str) -> Candidate:
+    """With 1000 residuals of this sum of squares."""
+    curve = Curve("1 m/s2", np.ones(500), np.ones(500), np.ones(500, complex), np.ones((500, 2)))
+    free = {f"m{i}": Free(start=1, min=0, max=2) for i in range(parameters)}
+    settings = Settings.model_construct(model="zspring", free=free, weights=weights)
+    model = SimpleNamespace(relative_step=1.0, tolerance=1.0, is_costly=False)
+    answer = Answer([np.full(500, np.exp(np.sqrt(squares / 500)) + 0j)], None)
+    x = np.zeros(parameters)
+    fit = Fit(x, x, answer, squares / 2, True, "", 1, x > 1, x, x, np.eye(parameters), np.eye(parameters))
+    return Candidate(name, Problem(settings, model, [curve]), fit)
+
+
+@pytest.mark.parametrize(
+    "weights, some, other, verdict",
+    [
+        ("errors", 1000.0, 1010.0, "the data ask for A"),  # exp(-5): strong, if the errors are right
+        ("errors", 16_000.0, 16_010.0, "the data cannot tell A from B"),  # four times the errors: 10 / 16
+        ("equal", 16_000.0, 16_010.0, "the data cannot tell A from B"),  # 1000 ln(1.0006)
+        ("equal", 1000.0, 1010.0, "the data ask for A"),  # 1000 ln(1.01)
+    ],
+)
+def test_errors_that_no_model_keeps_tell_less(weights, some, other, verdict):
+    lines = choice_table([candidate("A", some, 3, weights), candidate("B", other, 3, weights)])
+    assert any(line.startswith(verdict) for line in lines)
+    assert any("even A misses them by 4" in line for line in lines) == (weights == "errors" and some > 2000)
+
+
+def test_a_parameter_more_costs_the_logarithm_of_the_residuals():
+    lines = choice_table([candidate("A", 1000.0, 3, "errors"), candidate("B", 1000.0, 4, "errors")])
+    assert lines[2].split()[:3] == ["B", "4", f"{np.log(1000):+.3g}"]
+
+
+def test_other_models_have_no_tie_or_parameter_that_they_do_not_know():
+    """A linear head does not know zspring.k, to which k1 was tied; Coulomb's law not how steep the other one is."""
+    free = {"zspring.k": Free(start=1e4, min=1e3, max=1e5), "zspring.tau": Free(start=900, min=100, max=5000)}
+    with Fmu() as model:
+        defaults = {v.name: parse(v, v.start) for v in model.variables if v.causality == "parameter"}
+        settings = Settings.model_construct(
+            model="zspring", free=free, fixed={"friction": 1}, tied={"k1": Tie(to="zspring.k"), "m2": Tie(to="m3")}
+        )
+        settings.fixed["m3"] = 5.8
+        found = others(model, settings, defaults)
+    assert list(found["Z-spring, Coulomb"].free) == ["zspring.k"]
+    assert found["Z-spring, Coulomb"].fixed["zspring.tau"] == 900
+    linear = found["linear head"]
+    assert list(linear.free) == ["k1", "c1"] and list(linear.tied) == ["m2"]
+    assert linear.parameters(np.full(2, 0.5))["m2"] == 5.8

@@ -32,6 +32,16 @@ class Conditions:
     parameters: Mapping[str, Value]
     direction: str | None
     sources: Mapping[str, Path]  # who says it
+    silent: Mapping[str, list[Path]]  # who does not, where another does
+
+    @property
+    def remarks(self) -> list[str]:
+        """Which files are taken to be measured as another one says."""
+        return [
+            f"{', '.join(path.name for path in paths)} does not say {name}: taken as {self.sources[name].name} says"
+            for name, paths in self.silent.items()
+            if paths
+        ]
 
     def agreed(self, fmu: Fmu, given: Mapping[str, Value]) -> dict[str, Value]:
         """The given parameters and what the files say. Raises ZSpringError where they differ."""
@@ -61,20 +71,24 @@ def read_conditions(paths: Iterable[Path], fmu: Fmu) -> Conditions:
     """
     found: dict[str, Any] = {}
     sources: dict[str, Path] = {}
+    silent: dict[str, list[Path]] = {name: [] for name in (*STATED, "direction")}
     for path in paths:
         if is_universal(path):
+            for unsaid in silent.values():
+                unsaid.append(path)
             continue
         head = {canonical(key): value for key, value in read_table(path).head.items()}
         for name in (*STATED, "direction"):
             text = head.get(canonical(name))
             if text is None:
+                silent[name].append(path)
                 continue
             value = _direction(path, text) if name == "direction" else _parameter(path, fmu, name, text)
             if found.setdefault(name, value) != value:
                 raise ZSpringError(f"{path}: {name} = {text}: {sources[name]} says another; one fit takes one")
             sources.setdefault(name, path)
     direction = found.pop("direction", None)
-    return Conditions(found, direction, sources)
+    return Conditions(found, direction, sources, {name: unsaid for name, unsaid in silent.items() if name in sources})
 
 
 def is_universal(path: Path) -> bool:

@@ -148,7 +148,7 @@ def couple(pantograph, output, suffix, **given) -> None:
             if given["compare_steps"]:
                 run.compare_and_write(run.aimed(system, aim) if aim else system, output, suffix, what)
             elif given["draws_path"]:
-                draws = read_draws(given["draws_path"], fmu, ("drive",))
+                draws = read_draws(given["draws_path"], fmu, ("drive",), pantograph.assignments)
                 aimed = run.aimed(system, aim) if aim else system
                 run_draws(aimed, draws, given["draws_path"], output, suffix, spans, what)
             else:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..draws import SHARE, few, quantiles
+from ..draws import SHARE, doubts, quantiles
 from ..errors import tell
 from ..figures import save
 from ..interrupt import Interrupted
@@ -84,7 +84,10 @@ def run_draws(
         lines += _table(i, count, given, values)
     section = f"over {', '.join(dict.fromkeys(str(s or 'the whole run') for s in where))}, " if where else ""
     print(f"0-20 Hz, {section}{len(draws)} draws of {source.name}", *lines, sep="\n")
-    tell([*few(len(draws)), *near_wave_speed(system.catenary, system.line, system.journey.speed)], record.path)
+    width = max(float(np.ptp(each)) for _, values in drawn.values() for each in values.values())
+    tell(
+        [*doubts(len(draws), width), *near_wave_speed(system.catenary, system.line, system.journey.speed)], record.path
+    )
     figure, speed = folder / f"draws.{suffix}", f"{3.6 * system.journey.speed:g} km/h"
     save(draws_figure(drawn, f"{what}, {speed}: {len(draws)} draws of {source.name}"), figure)
     print("written:", record.path, figure)

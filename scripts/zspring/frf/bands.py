@@ -13,7 +13,7 @@ import numpy as np
 from ..bench.measure import measure
 from ..bench.points import FrfPoint, FrfSettings, sweeps
 from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
-from ..draws import SHARE, few, quantiles
+from ..draws import SHARE, doubts, quantiles
 from ..errors import ZSpringError, tell
 from ..figures import save
 from ..fmu import Fmu
@@ -81,7 +81,8 @@ def run_bands(
     print(*(_line(band, quantity) for band in bands), sep="\n")
     lost = sum(int(np.isnan(band.magnitude[1]).sum()) for band in bands)
     unsolved = [f"{lost} points have no band: not all draws could be solved there"] if lost else []
-    tell([*few(len(draws)), *unsolved], written[0])
+    width = max(float(np.nanmax(band.magnitude[2] - band.magnitude[0], initial=0.0)) for band in bands)
+    tell([*doubts(len(draws), width), *unsolved], written[0])
     print("written:", *written)
 
 

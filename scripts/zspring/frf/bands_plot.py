@@ -44,7 +44,8 @@ def bands_figure(bands: Sequence[Band], quantity: str, title: str) -> Figure:
     width.set(xlabel="frequency  [Hz]", ylabel="± half width  [%]")
     width.set_ylim(bottom=0)
     frequencies = np.concatenate([band.frequency for band in bands])
-    width.set_xlim(frequencies.min(), frequencies.max())
+    if np.ptp(frequencies) > 0:
+        width.set_xlim(frequencies.min(), frequencies.max())
     for axes in (magnitude, phase, width):
         axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
     return figure

@@ -173,7 +173,7 @@ def frf(
         settings |= {"amplitudes": amplitudes or STANDARD.amplitudes, "direction": direction or STANDARD.direction}
         frf_settings = FrfSettings(parameters=parameters, **settings)
         if draws_path:
-            draws = read_draws(draws_path, fmu, BENCH_PARAMETERS)
+            draws = read_draws(draws_path, fmu, BENCH_PARAMETERS, pantograph.assignments)
             folder = output or default_folder(fmu, frf_settings).with_name("bands")
             with claimed(folder):
                 run_bands(fmu, frf_settings, draws, draws_path, folder, quantity, suffix, jobs, pantograph.named)

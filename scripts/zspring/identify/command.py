@@ -34,8 +34,9 @@ def identify(pantograph, settings_path, example, output, jobs, suffix) -> None:
     Measurements are CSV files or universal files (data set 58): receptance, dynamic stiffness, mobility,
     accelerance, or the inverse of these two, with several amplitudes; a static test may join them.
 
-    A global search is followed by least squares. Writes fitted.ssv for --parameters and other tools, fit.csv,
-    fit.png and identify.log. Ctrl-C keeps the search, and the same command goes on from there.
+    A search for where to begin is followed by least squares. Writes fitted.ssv for --parameters and other tools,
+    fit.csv, fit.png, report.html and identify.log; where they were asked for, draws.csv for --draws, and figures of
+    the posterior, the harmonics and the static test. Ctrl-C keeps the search, and the same command goes on from there.
     """
     if example:
         copy_examples(example, {name: f"examples/{name}" for name in EXAMPLE})

@@ -80,6 +80,7 @@ def write_posterior(fmu: Fmu, problem: Problem, posterior: Posterior, path: Path
     """The parameters of each draw that are free, or tied to one that is; the others are those of the fitted set."""
     settings = problem.settings
     names = [*settings.free, *(name for name, tie in settings.tied.items() if tie.to in settings.free)]
+    names = [name for name in names if not name.startswith(OTHER_PARAMETERS)]
     rows = [[settings.parameters(x)[name] for name in names] for x in posterior.x]
     head = {**fit_head(fmu, settings), "effective sample size": f"{posterior.effective:.3g} of {posterior.drawn} draws"}
     return write_draws(path, fmu, names, rows, head)

@@ -51,8 +51,9 @@ def fit(problem: Problem, x: np.ndarray, progress: Callable[[float], None]) -> F
         if bounded.cost <= result.cost * (1 + 1e-6) + NOISE_FREE:
             result, held = bounded, near
     jacobian = result.jacobian
-    error, correlation = statistics(problem, result.x, jacobian, held, result.cost)
-    unbound_error, _ = statistics(problem, result.x, jacobian, np.zeros_like(held), result.cost)
+    variances = problem.variances(result.answer, int(np.sum(~held)))
+    error, correlation = statistics(problem, result.x, jacobian, held, variances)
+    unbound_error, _ = statistics(problem, result.x, jacobian, np.zeros_like(held), variances)
     return Fit(
         x=result.x,
         values=np.array([free.value(at) for free, at in zip(problem.settings.free.values(), result.x)]),
@@ -70,14 +71,13 @@ def fit(problem: Problem, x: np.ndarray, progress: Callable[[float], None]) -> F
 
 
 def statistics(
-    problem: Problem, x: np.ndarray, jacobian: np.ndarray, held: np.ndarray, cost: float
+    problem: Problem, x: np.ndarray, jacobian: np.ndarray, held: np.ndarray, variances: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Standard errors (n,) and correlations (n, n) from the Jacobian (m, n) with respect to x.
 
-    cov = s^2 (J^T J)^-1 with s^2 = 2 cost / (m - n), for residuals that are independent and of one size
-    (Bates and Watts, Nonlinear Regression Analysis, 1988, section 2.2); see Problem.variance for those in
-    standard errors of the measurement. A direction in which the residuals do not change makes the standard errors of
-    its parameters infinite.
+    cov = K diag(s^2) K^T with K = (J^T J)^-1 J^T, for residuals that are independent, with variances s^2 (m,) by their
+    kind, see Problem.variances; for one kind s^2 (J^T J)^-1 (Bates and Watts, Nonlinear Regression Analysis, 1988,
+    section 2.2). A direction in which the residuals do not change makes the standard errors of its parameters infinite.
     """
     n = x.size
     error, correlation = np.full(n, np.nan), np.full((n, n), np.nan)
@@ -87,12 +87,11 @@ def statistics(
     J = jacobian[:, kept]
     scale = np.linalg.norm(J, axis=0)
     scale[scale == 0] = 1.0
-    _, singular, directions = np.linalg.svd(J / scale, full_matrices=False)
+    left, singular, directions = np.linalg.svd(J / scale, full_matrices=False)
     usable = singular > SINGULAR * singular[0]
     lost = np.any(np.abs(directions[~usable]) > 0.1, axis=0) | ~np.any(J, axis=0)
-    inverse = directions[usable].T / singular[usable]
-    variance = problem.variance(cost, J.shape[0] - kept.size)
-    covariance = variance * (inverse @ inverse.T) / np.outer(scale, scale)
+    inverse = directions[usable].T / singular[usable] @ left[:, usable].T / scale[:, None]
+    covariance = inverse * variances @ inverse.T
     sigma = np.sqrt(np.diag(covariance))
     slopes = np.array([free.slope(at) for free, at in zip(problem.settings.free.values(), x)])[kept]
     error[kept] = np.where(lost, np.inf, sigma * slopes)
@@ -185,9 +184,9 @@ def descend(
         residuals, J = problem.residuals(answer), start.jacobian[:, kept]
         if last is not None:
             point, before, J = last
-            step, change = part - point, residuals - before
+            step, change = (part - point) * np.any(J, axis=0), residuals - before  # columns without effect keep none
             missed = change - J @ step
-            if problem.is_costly and np.linalg.norm(missed) < FORETOLD * np.linalg.norm(change):
+            if problem.is_costly and step.any() and np.linalg.norm(missed) < FORETOLD * np.linalg.norm(change):
                 J = J + np.outer(missed, step) / (step @ step)
             else:
                 J = problem.jacobian(complete(part), answer, kept)

@@ -50,7 +50,8 @@ def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], drawn: Seq
     phase.set(ylabel="phase  [deg]")
     error.set(xlabel="frequency  [Hz]", ylabel="fitted / measured - 1  [%]")
     frequencies = np.concatenate([curve.frequency for curve in curves])
-    error.set_xlim(frequencies.min(), frequencies.max())
+    if np.ptp(frequencies) > 0:
+        error.set_xlim(frequencies.min(), frequencies.max())
     for axes in (magnitude, phase, error):
         axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
     return figure

@@ -21,6 +21,7 @@ from .problem import Problem
 ROUNDS = 3
 FREEDOM = 5  # of Student's t: heavier in its tails than what it stands for
 PRIOR = 1 / 12  # variance of an even distribution from 0 to 1
+FEWEST = 10_000  # draws of a proposal, which cost nothing, that tell how much of it is between the bounds
 LEAST = 1e-9  # of a proposal's variance, where the draws so far are one
 
 
@@ -52,8 +53,9 @@ def sample(problem: Problem, fit: Fit, draws: int, seed: int, costs: Callable[[n
     weights = np.empty(0)
     for part in range(ROUNDS):
         count = draws // ROUNDS + (part < draws % ROUNDS)
-        proposals.append((count, multivariate_t(mean, covariance * (FREEDOM - 2) / FREEDOM, df=FREEDOM, seed=rng)))
-        new = _within(proposals[-1][1], count)
+        proposal = multivariate_t(mean, covariance * (FREEDOM - 2) / FREEDOM, df=FREEDOM, seed=rng)
+        new, share = _within(proposal, count)
+        proposals.append((count / share, proposal))
         xs, cost = np.vstack([xs, new]), np.append(cost, costs(new))
         mixture = sum(n * np.exp(t.logpdf(xs)) for n, t in proposals)
         logarithm = _log_likelihood(problem, cost, residuals, variance) - np.log(mixture)
@@ -69,13 +71,14 @@ def sample(problem: Problem, fit: Fit, draws: int, seed: int, costs: Callable[[n
     return Posterior(xs[rng.permutation(chosen)], float(effective), draws)
 
 
-def _within(proposal, count: int) -> np.ndarray:
-    """So many draws (count, n) between the bounds."""
-    found = np.empty((0, proposal.dim))
-    while len(found) < count:
-        new = proposal.rvs(count).reshape(count, proposal.dim)
-        found = np.vstack([found, new[np.all((new >= 0) & (new <= 1), axis=1)]])
-    return found[:count]
+def _within(proposal, count: int) -> tuple[np.ndarray, float]:
+    """So many draws (count, n) between the bounds, and the share of the proposal that is there."""
+    found, drawn, kept = np.empty((0, proposal.dim)), 0, 0
+    while kept < count or drawn < FEWEST:
+        new = proposal.rvs(max(count, FEWEST)).reshape(-1, proposal.dim)
+        inside = new[np.all((new >= 0) & (new <= 1), axis=1)]
+        found, drawn, kept = np.vstack([found, inside]), drawn + len(new), kept + len(inside)
+    return found[:count], kept / drawn
 
 
 def _log_likelihood(problem: Problem, cost: np.ndarray, residuals: int, variance: float) -> np.ndarray:

@@ -21,6 +21,8 @@ from .settings import Settings
 # Good enough to find the right valley. The step, in s, is not for differences: those with friction are 30 % off.
 COARSE_STEP, COARSE_TOLERANCE = 2e-3, 1e-2
 ROUGH_PERIODS = 6
+POINTS = "points"  # kind of residuals
+NO_EFFECT = 1e-9  # change of the residuals over the whole range of a parameter
 BY_CHANCE = 0.95  # of sums of squares
 # Residual of a point that the model could not compute: 10 in the logarithm, or 10 times the mean square.
 PENALTY = 10.0
@@ -153,6 +155,21 @@ class Problem:
         that of the phase in rad; each over its standard error where they are known. Linear: difference over the root
         mean square of the measured curve.
         """
+        return np.concatenate([part for _, part in self._parts(answer)])
+
+    def variances(self, answer: Answer, parameters: int) -> np.ndarray:
+        """Of each residual (m,) at the solution with so many parameters, by kind: see `variance`."""
+        parts = self._parts(answer)
+        share = 1 - parameters / max(sum(part.size for _, part in parts), parameters + 1)
+        found: dict[str, float] = {}
+        for kind in dict.fromkeys(kind for kind, _ in parts):
+            values = np.concatenate([part for other, part in parts if other == kind])
+            is_chance = self.is_weighted and kind == POINTS
+            found[kind] = self._variance(values @ values, values.size * share, is_chance)
+        return np.concatenate([np.full(part.size, found[kind]) for kind, part in parts])
+
+    def _parts(self, answer: Answer) -> list[tuple[str, np.ndarray]]:
+        """Residuals by kind; those of one kind are alike in size."""
         parts = []
         for i, (curve, H) in enumerate(zip(self.curves, answer.curves)):
             with np.errstate(invalid="ignore", divide="ignore"):
@@ -166,17 +183,23 @@ class Problem:
             off = _finite(np.column_stack([error.real, error.imag]), PENALTY)
             if self.is_weighted and curve.error is not None:
                 off /= np.hypot(curve.error, SETTLED.tolerance)  # the model's own scatter
-            parts.append(off.T.ravel())
+            parts.append((POINTS, off.T.ravel()))
             if self.settings.harmonics and answer.harmonics:
-                parts.append(self._harmonics(curve, answer.harmonics[i]))
+                kind = POINTS if self.is_weighted else "harmonics"
+                parts.append((kind, self._harmonics(curve, answer.harmonics[i])))
         if self.static and self.settings.static and answer.static is not None:
             wanted, force = (f - f.mean() for f in (self.static.force, answer.static))
             points = sum(curve.frequency.size for curve in self.curves)
-            # As heavy as all points of the curves together, if they are off as much.
+            # As heavy as all points of the curves together, if they are off as much; in their standard errors, if those
+            # weigh.
             weight = np.sqrt(self.settings.static.weight * points / wanted.size / np.mean(wanted**2))
+            if self.is_weighted:
+                weight /= np.median(
+                    np.concatenate([curve.error[:, 0] for curve in self.curves if curve.error is not None])
+                )
             error = weight * (force - wanted)
-            parts.append(_finite(error, PENALTY))
-        return np.concatenate(parts)
+            parts.append(("static test", _finite(error, PENALTY)))
+        return parts
 
     def _harmonics(self, curve: Curve, computed: np.ndarray) -> np.ndarray:
         """Residuals (k,) of those that count, over the first harmonic, or over standard errors where those count."""
@@ -192,9 +215,12 @@ class Problem:
         Where they are in standard errors of the measurement it is 1, unless they are larger than by chance (Birge,
         The calculation of errors by the method of least squares, Physical Review 40, 1932).
         """
+        return self._variance(2 * cost, freedom, self.is_weighted)
+
+    def _variance(self, squares: float, freedom: float, is_weighted: bool) -> float:
         freedom = max(freedom, 1)
-        is_chance = self.is_weighted and 2 * cost <= chi2.ppf(BY_CHANCE, freedom)
-        return 1.0 if is_chance else 2 * cost / freedom
+        is_chance = is_weighted and squares <= chi2.ppf(BY_CHANCE, freedom)
+        return 1.0 if is_chance else float(squares / freedom)
 
     @property
     def rough(self) -> Answer | None:
@@ -216,4 +242,7 @@ class Problem:
             steps.append(step if at + step <= 1 else -step)
         shifted = [x + step * np.eye(x.size)[i] for i, step in zip(columns, steps)]
         answers = self.answers(shifted, like=answer)
-        return np.column_stack([(self.residuals(other) - base) / step for other, step in zip(answers, steps)])
+        columns = [(self.residuals(other) - base) / step for other, step in zip(answers, steps)]
+        jacobian = np.column_stack(columns)
+        jacobian[:, np.linalg.norm(jacobian, axis=0) < NO_EFFECT] = 0.0  # but rounding
+        return jacobian

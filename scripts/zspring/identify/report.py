@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..bench.curves import Curve
+from ..bench.fmu_bench import HARMONICS
 from ..fmu import Fmu
 from ..text_tables import aligned
 from .fit import Fit
@@ -61,7 +62,7 @@ def doubts(problem: Problem, fit: Fit) -> list[str]:
                     f"{names[j]} and {names[i]} can hardly be told apart: correlation {fit.correlation[i, j]:.3f}"
                 )
     if problem.is_weighted:
-        ratio = np.sqrt(problem.variance(fit.cost, problem.residuals(fit.answer).size - len(names)))
+        ratio = np.sqrt(problem.variances(fit.answer, len(names))[0])  # of the points
         if ratio > 1:
             lines.append(
                 f"the model misses the measurement by {ratio:.3g} times its standard errors, more than by chance: "
@@ -143,6 +144,13 @@ def residual_table(problem: Problem, fit: Fit) -> list[str]:
             ]
         rows.append([curve.label, f"{kept.frequency.size}", *cells])
     lines = aligned(rows)
+    for order in problem.settings.harmonics if fit.answer.harmonics else ():
+        off = [
+            (computed - curve.harmonics.peak)[:, HARMONICS.index(order)] * np.abs(curve.H) / curve.displacement
+            for curve, computed in zip(problem.curves, fit.answer.harmonics or ())
+            if curve.harmonics is not None
+        ]
+        lines.append(f"harmonic {order}: rms {100 * rms(np.concatenate(off)):.2g} % of the first one")
     if problem.static and fit.answer.static is not None:
         measured, force = (f - f.mean() for f in (problem.static.force, fit.answer.static))
         lines.append(

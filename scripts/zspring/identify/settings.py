@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -219,6 +220,8 @@ def read_settings(
                 if fmu.variables.settable(each).type != "Real":
                     raise ZSpringError(f"tied.{name}: {each} is no Real parameter")
         conditions = read_conditions([measurement.path for measurement in settings.measurement], fmu)
+        for remark in conditions.remarks:
+            print(remark, file=sys.stderr)
         fixed = _fixed(settings, fmu, parameter_set, assignments, conditions)
         return settings.model_copy(update={"fixed": fixed, "direction": conditions.swept(settings.direction)})
 

@@ -133,7 +133,8 @@ class Stages:
         found = []
         for name, settings in others(self.fmu, problem.settings, defaults).items():
             other = Problem(settings, model, problem.curves, problem.static)
-            x = result.x if list(settings.free) == list(problem.settings.free) else other.start
+            found_x = dict(zip(problem.settings.free, result.x))
+            x = np.array([found_x.get(name, at) for name, at in zip(settings.free, other.start)])
             found.append(Candidate(name, other, self.fit(other, x, name)))
         return found
 

@@ -16,6 +16,11 @@ from .settings import Settings
 def settled_targets(settings: Settings, curves: Sequence[Curve]) -> Settings:
     """The settings with the weights that hold. Raises ZSpringError for weights or harmonics that no file tells."""
     weights = _weights(settings, curves)
+    more = [name for name, given in vars(settings.uncertainty).items() if name != "seed" and given]
+    more += ["compare_models"] if settings.compare_models else []
+    mixed = "[static]" if settings.static else "harmonics without standard errors"
+    if more and (settings.static or (settings.harmonics and weights == "equal")):
+        raise ZSpringError(f"{more[0]}: needs a likelihood, which {mixed} beside the points do not have")
     for order in settings.harmonics:
         for curve in curves:
             column = HARMONICS.index(order)
