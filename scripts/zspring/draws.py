@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -22,6 +23,11 @@ def write_draws(
     """One row for each draw, a column with its unit for each of these parameters."""
     columns = [f"{name} [{fmu.variables[name].unit or 1}]" for name in names]
     return write_table(path, {**fmu.identity, **head}, columns, rows, digits=None)
+
+
+def head_of(path: Path) -> dict[str, str]:
+    """For the head of what is made of these draws."""
+    return {"draws": f"{path.name} {hashlib.sha256(path.read_bytes()).hexdigest()}"}
 
 
 def read_draws(

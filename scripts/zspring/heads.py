@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+import hashlib
+from collections.abc import Container, Iterable, Mapping
 from datetime import datetime, timezone
+from pathlib import Path
 
 from .fmu import Fmu
 from .variables import Value, text, with_unit
@@ -20,6 +22,12 @@ def file_head(
     listed = {name: with_unit(fmu.variables[name], value) for name, value in parameters.items() if name not in but_not}
     synthetic = " ".join(fmu.variables.synthetic(parameters))
     return {**fmu.identity, **(settings or {}), "synthetic": synthetic, **listed}
+
+
+def content_of(paths: Iterable[Path]) -> dict[str, str]:
+    """For a head: the files that went into the results, each with the SHA-256 of what it held."""
+    digests = ((hashlib.sha256(path.read_bytes()).hexdigest(), path) for path in paths)
+    return {f"file {i}": f"{digest} {path}" for i, (digest, path) in enumerate(digests, 1)}
 
 
 def now() -> str:

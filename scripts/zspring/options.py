@@ -147,6 +147,19 @@ line_option = option(
 )
 
 
+def settings_argument(example: str):
+    """SETTINGS.toml, or --example DIR, which only writes `example`."""
+
+    def decorated(command: Callable) -> Callable:
+        folder = click.Path(path_type=Path, file_okay=False)
+        text = f"Only write an example into this folder: {example}."
+        command = option("--example", kind=folder, metavar="DIR", help=text)(command)
+        path = click.Path(path_type=Path)
+        return click.argument("settings_path", type=path, metavar="SETTINGS.toml", required=False)(command)
+
+    return decorated
+
+
 def draws_option(what: str):
     """--draws FILE: `what` is done for each of them."""
     text = f"Draws of the pantograph's parameters, as `zspring identify` leaves them: {what} for each, with intervals."

@@ -10,8 +10,7 @@ import numpy as np
 
 from ..fmu import Instance
 from ..variables import Value
-
-HARMONICS = range(2, 8)  # of the contact force, which the benches tell beside the first
+from .responses import HARMONICS
 
 
 class FmuBench:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..fmu import Instance
 from ..variables import Value
-from .fmu_bench import HARMONICS
+from .responses import HARMONICS
 
 
 class InputBench:

@@ -30,9 +30,8 @@ from ..tables import Table, read_table
 from ..units import UnitError
 from .conditions import is_universal
 from .curves import Curve, Harmonics, Source
-from .fmu_bench import HARMONICS
 from .levels import levels_of, named_levels
-from .responses import acceleration_of, response_of
+from .responses import HARMONICS, acceleration_of, response_of
 from .uff import read_uff
 
 ALIASES = {"h re": "real", "h im": "imaginary", "imag": "imaginary"}

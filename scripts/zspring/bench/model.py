@@ -15,9 +15,10 @@ from ..fmu import FmuError, Instance, StepDiscarded
 from ..variables import Value
 from .conditions import FILE_ORDER
 from .curves import Curve
-from .fmu_bench import HARMONICS, FmuBench
+from .fmu_bench import FmuBench
 from .measure import settle
 from .points import FAILED, FrfSettings
+from .responses import HARMONICS
 from .static_test import StaticTest
 
 Periods = tuple[int, ...]  # for each point of a curve

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..variables import Value, exact
 from .control import CONTROLS, acceleration_at
-from .fmu_bench import HARMONICS
+from .responses import HARMONICS
 
 SETTLED, NOT_SETTLED, LEFT_OUT, FAILED = "settled", "not settled", "left out", "failed"
 NOT_HELD = "not held"  # the force of force control, with the reason

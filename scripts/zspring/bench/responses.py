@@ -21,6 +21,9 @@ from ..units import conversion
 Number = TypeVar("Number", complex, np.ndarray)
 
 
+HARMONICS = range(2, 8)  # of the contact force, which the benches tell beside the first
+
+
 @dataclass(frozen=True)
 class Response:
     """A kind of frequency response: motion over force, or the inverse."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from ..draws import SHARE, doubts, quantiles
+from ..draws import SHARE, doubts, head_of, quantiles
 from ..errors import tell
 from ..figures import save
 from ..interrupt import Interrupted
@@ -42,11 +41,7 @@ def run_draws(
     finished are kept.
     """
     with LineRun(system) as run:
-        head = {
-            **run.settings,
-            "draws": f"{source.name} {hashlib.sha256(source.read_bytes()).hexdigest()}",
-            "spans": "{}:{}".format(*spans) if spans else "those of the summary",
-        }
+        head = {**run.settings, **head_of(source), "spans": "{}:{}".format(*spans) if spans else "those of the summary"}
     columns = [f"{name} [{unit or 1}]" for name, (_, unit, _) in FIGURES.items()]
     count, sets = len(system.pantographs), [{}, *draws]
     record = Record[Draw](

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -11,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from ..bench.measure import measure
-from ..bench.points import FrfPoint, FrfSettings, sweeps
+from ..bench.points import FrfSettings, sweeps
 from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
-from ..draws import SHARE, doubts, quantiles
+from ..draws import SHARE, doubts, head_of, quantiles
 from ..errors import ZSpringError, tell
 from ..figures import save
 from ..fmu import Fmu
@@ -47,8 +46,7 @@ def run_bands(
     if not planned:
         raise ZSpringError(f"nothing to measure: all points need more stroke than {settings.stroke:g} m")
     parameters = all_parameters(fmu, settings)
-    head = report.frf_head(fmu, settings, parameters, quantity)
-    head["draws"] = f"{source.name} {hashlib.sha256(source.read_bytes()).hexdigest()}"
+    head = {**report.frf_head(fmu, settings, parameters, quantity), **head_of(source)}
     sets, places = [{}, *draws], [(sweep.level, f) for sweep in planned for f in sweep.frequencies]
     record = Record[Drawn](
         folder / "draws.partial.csv",
@@ -72,7 +70,8 @@ def run_bands(
     for level in dict.fromkeys(level for level, _ in places):
         frequency = np.array(sorted(f for at, f in places if at == level))
         H = np.array([[known[n, level, f] for f in frequency.tolist()] for n in range(len(sets))])
-        bands.append(_band(level, settings.unit, frequency, as_quantity(H, quantity, frequency), quantity))
+        label = f"{level:g} {settings.unit}"
+        bands.append(_band(label, frequency, as_quantity(H, quantity, frequency), quantity))
     written = [_write(folder / "bands.csv", head, bands, quantity), folder / f"bands.{suffix}"]
     title = report.title(fmu, settings, parameters, pantograph)
     about = f"{100 * SHARE:g} % of {len(draws)} draws of {source.name}"
@@ -86,10 +85,10 @@ def run_bands(
     print("written:", *written)
 
 
-def _band(level: float, unit: str, frequency: np.ndarray, value: np.ndarray, quantity: str) -> Band:
+def _band(label: str, frequency: np.ndarray, value: np.ndarray, quantity: str) -> Band:
     """Of values (1 + draws, n), the first of the parameters as given."""
     magnitude, phase = quantiles(np.abs(value[1:])), quantiles(np.asarray(phase_degrees(value[1:], quantity)))
-    return Band(FrfPoint(level, 1.0, "", level=level, unit=unit).label, frequency, value[0], magnitude, phase)
+    return Band(label, frequency, value[0], magnitude, phase)
 
 
 def _write(path: Path, head: Mapping[str, str], bands: Sequence[Band], quantity: str) -> Path:

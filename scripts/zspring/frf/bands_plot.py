@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
 from ..bench.responses import QUANTITIES, phase_degrees
-from ..figures import new_figure
+from ..figures import level_label, new_figure, over_frequency, rising_colors
 
 
 @dataclass(frozen=True)
@@ -28,11 +27,11 @@ def bands_figure(bands: Sequence[Band], quantity: str, title: str) -> Figure:
     """Magnitude, phase, and the band's half width over the median, by level."""
     figure = new_figure(8.5, 9.0)
     magnitude, phase, width = figure.subplots(3, 1, sharex=True, height_ratios=[2, 1, 1])
-    colors = matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(bands)))
+    colors = rising_colors(len(bands))
     for band, color in zip(bands, colors):
         for axes, (low, _, high) in ((magnitude, band.magnitude), (phase, band.phase)):
             axes.fill_between(band.frequency, low, high, color=color, alpha=0.35, linewidth=0)
-        label = band.label.replace("s2", "s²")
+        label = level_label(band.label)
         magnitude.plot(band.frequency, np.abs(band.given), color=color, linewidth=0.9, label=label)
         phase.plot(band.frequency, phase_degrees(band.given, quantity), color=color, linewidth=0.9)
         low, middle, high = band.magnitude
@@ -41,11 +40,7 @@ def bands_figure(bands: Sequence[Band], quantity: str, title: str) -> Figure:
     magnitude.legend(title="line: as given", title_fontsize=8, fontsize=8, ncols=2)
     magnitude.set(title=title, ylabel=f"{quantity}, magnitude  [{QUANTITIES[quantity]}]")
     phase.set(ylabel="phase  [deg]")
-    width.set(xlabel="frequency  [Hz]", ylabel="± half width  [%]")
+    width.set(ylabel="± half width  [%]")
     width.set_ylim(bottom=0)
-    frequencies = np.concatenate([band.frequency for band in bands])
-    if np.ptp(frequencies) > 0:
-        width.set_xlim(frequencies.min(), frequencies.max())
-    for axes in (magnitude, phase, width):
-        axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
+    over_frequency([magnitude, phase, width], np.concatenate([band.frequency for band in bands]))
     return figure

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from ..bench.fmu_bench import HARMONICS
 from ..bench.points import FrfPoint
+from ..bench.responses import HARMONICS
 from ..figures import new_figure
 from .plot import LEVELS, WAY_STYLES, level_colors, shown
 

@@ -7,9 +7,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from ..bench.fmu_bench import HARMONICS
 from ..bench.points import FrfPoint, Kept, Sweep
-from ..bench.responses import QUANTITIES, as_quantity, phase_degrees
+from ..bench.responses import HARMONICS, QUANTITIES, as_quantity, phase_degrees
 from ..records import Record
 from ..tables import write_table
 from ..variables import exact

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,7 +14,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from ..bench.compare import LevelComparison
 from ..bench.points import LEFT_OUT, NOT_HELD, NOT_SETTLED, REPEATS, FrfPoint, differences
 from ..bench.responses import QUANTITIES, RESPONSES, as_quantity, phase_degrees
-from ..figures import new_figure
+from ..figures import level_label, new_figure, rising_colors
 from ..receptance import LinearModel
 
 BOUND_STYLES = {"locked": "--", "free": ":", "linear": "-."}
@@ -125,7 +124,7 @@ def _draw_measured(
     near = [amplitude for amplitude in colors if abs(amplitude / middle - 1) < NEAR]
     color = colors[min(near, key=lambda a: abs(a / middle - 1))] if near else "black"
     style: dict[str, Any] = {"color": color, "linestyle": "none", "marker": "o", "markersize": 4, "fillstyle": "none"}
-    label = level.measured.label.replace("m/s2", "m/s²")
+    label = level_label(level.measured.label)
     curves = [(level.measured.H, f"measured, {label}", style)]
     if not near:
         curves.append((level.computed, f"model, {label}", {"color": "black", "linewidth": 0.8}))
@@ -138,9 +137,9 @@ def _draw_measured(
 def level_colors(points: Sequence[FrfPoint]) -> dict[float, np.ndarray]:
     """A colour for each level, ascending."""
     levels = sorted({point.level for point in points})
-    return dict(zip(levels, matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(levels)))))
+    return dict(zip(levels, rising_colors(len(levels))))
 
 
 def shown(level: float, unit: str) -> str:
     """A level in a legend."""
-    return f"{1e3 * level:g} mm" if unit == "m" else f"{level:g} {unit}".replace("m/s2", "m/s²")
+    return f"{1e3 * level:g} mm" if unit == "m" else level_label(f"{level:g} {unit}")

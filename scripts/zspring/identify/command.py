@@ -6,20 +6,22 @@ from pathlib import Path
 
 import click
 
-from ..options import copy_examples, format_option, jobs_option, opened, option, output_option, pantograph_options
+from ..options import (
+    copy_examples,
+    format_option,
+    jobs_option,
+    opened,
+    output_option,
+    pantograph_options,
+    settings_argument,
+)
 from ..records import claimed
 
 EXAMPLE = ("identify.toml", "bench.csv", "independent.csv")
 
 
 @click.command()
-@click.argument("settings_path", type=click.Path(path_type=Path), metavar="SETTINGS.toml", required=False)
-@option(
-    "--example",
-    kind=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Only write an example into this folder: settings and synthetic measurements, both explained.",
-)
+@settings_argument("settings and synthetic measurements, both explained")
 @pantograph_options
 @output_option(described="results/identify-SETTINGS")
 @jobs_option("Amplitudes to simulate at a time.")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from datetime import datetime, timezone
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 from ..bench.points import FrfSettings
 from ..draws import write_draws
 from ..fmu import Fmu
-from ..heads import file_head
+from ..heads import content_of, file_head
 from ..parameter_sets import write_set
 from ..tables import write_table
 from ..variables import Value, with_unit
@@ -30,7 +29,7 @@ def fit_head(fmu: Fmu, settings: Settings) -> dict[str, str]:
     return {
         "SHA-256 of the FMU": fmu.sha256,
         **{f"setting {key}": repr(value) for key, value in settings},
-        **{f"file {i}": f"{hashlib.sha256(path.read_bytes()).hexdigest()} {path}" for i, path in enumerate(files, 1)},
+        **content_of(files),
     }
 
 

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..bench.curves import Curve
-from ..bench.fmu_bench import HARMONICS
-from ..bench.responses import phase_degrees
+from ..bench.responses import HARMONICS, phase_degrees
 from ..bench.static_test import StaticTest
-from ..figures import new_figure
+from ..figures import level_label, new_figure, over_frequency, rising_colors
 from .fit import Fit
 from .posterior import Posterior
 from .problem import Problem
@@ -29,14 +27,14 @@ def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], drawn: Seq
     """
     figure = new_figure(8.5, 9)
     magnitude, phase, error = figure.subplots(3, 1, sharex=True, height_ratios=[2, 1, 1])
-    colors = matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(curves)))
+    colors = rising_colors(len(curves))
     for curve, H, line, color in zip(curves, fitted, drawn, colors):
         points = {"color": color, "linestyle": "none", "marker": "o", "fillstyle": "none", "markersize": 3}
         points |= {"elinewidth": 0.7, "capsize": 1.5}
         size, angle = magnitude_error(curve, H), phase_error(curve, H)
         scatter, turn = (np.sqrt(np.nanmean(each**2)) for each in (size, angle))
         magnitude.errorbar(curve.frequency, np.abs(curve.H), scatter * np.abs(curve.H), **points)
-        magnitude.semilogy(line.frequency, np.abs(line.H), label=curve.label.replace("s2", "s²"), color=color)
+        magnitude.semilogy(line.frequency, np.abs(line.H), label=level_label(curve.label), color=color)
         phase.errorbar(curve.frequency, phase_degrees(curve.H, "receptance"), turn, **points)
         phase.plot(line.frequency, phase_degrees(line.H, "receptance"), color=color)
         error.plot(curve.frequency, 100 * size, marker=".", markersize=3, color=color, linewidth=0.6)
@@ -48,12 +46,8 @@ def fit_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], drawn: Seq
     magnitude.legend(handles=handles, fontsize=8, ncols=2)
     magnitude.set(title=title, ylabel="|H|, receptance  [m/N]")
     phase.set(ylabel="phase  [deg]")
-    error.set(xlabel="frequency  [Hz]", ylabel="fitted / measured - 1  [%]")
-    frequencies = np.concatenate([curve.frequency for curve in curves])
-    if np.ptp(frequencies) > 0:
-        error.set_xlim(frequencies.min(), frequencies.max())
-    for axes in (magnitude, phase, error):
-        axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
+    error.set(ylabel="fitted / measured - 1  [%]")
+    over_frequency([magnitude, phase, error], np.concatenate([curve.frequency for curve in curves]))
     return figure
 
 
@@ -118,7 +112,7 @@ def harmonics_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], titl
         return None
     figure = new_figure(8.5, 1.9 * len(orders) + 0.8)
     panels = figure.subplots(len(orders), 1, sharex=True, squeeze=False)[:, 0]
-    colors = matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(curves)))
+    colors = rising_colors(len(curves))
     for axes, order in zip(panels, orders):
         column = HARMONICS.index(order)
         for curve, computed, color in zip(curves, fitted, colors):
@@ -127,9 +121,7 @@ def harmonics_figure(curves: Sequence[Curve], fitted: Sequence[np.ndarray], titl
                 peak, error = percent * curve.harmonics.peak[:, column], percent * curve.harmonics.error[:, column]
                 style = {"color": color, "linestyle": "none", "marker": "o", "fillstyle": "none", "markersize": 3}
                 axes.errorbar(curve.frequency, peak, np.nan_to_num(error), elinewidth=0.7, **style)
-            axes.plot(
-                curve.frequency, percent * computed[:, column], color=color, label=curve.label.replace("s2", "s²")
-            )
+            axes.plot(curve.frequency, percent * computed[:, column], color=color, label=level_label(curve.label))
         axes.set_ylabel(f"harmonic {order}  [%]")
         axes.grid(True, linewidth=0.4, alpha=0.5)
         axes.set_ylim(bottom=0)

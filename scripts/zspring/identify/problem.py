@@ -10,9 +10,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from ..bench.curves import Curve
-from ..bench.fmu_bench import HARMONICS
 from ..bench.model import SETTLED, BenchModel, Periods
-from ..bench.responses import as_quantity
+from ..bench.responses import HARMONICS, as_quantity
 from ..bench.static_test import StaticTest
 from ..receptance import receptance
 from ..variables import Value

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..bench.curves import Curve
-from ..bench.fmu_bench import HARMONICS
+from ..bench.responses import HARMONICS
 from ..fmu import Fmu
 from ..text_tables import aligned
 from .fit import Fit

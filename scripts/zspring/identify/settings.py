@@ -12,9 +12,8 @@ from pydantic import Field, Strict, model_validator
 
 from ..bench.conditions import Conditions, read_conditions
 from ..bench.curves import Source
-from ..bench.fmu_bench import HARMONICS
 from ..bench.measure import BENCH_PARAMETERS
-from ..bench.responses import QUANTITIES
+from ..bench.responses import HARMONICS, QUANTITIES
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..parameter_sets import ACCURATE_STEP, PANTOGRAPHS, chosen_set

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from ..bench.curves import Curve
-from ..bench.fmu_bench import HARMONICS
+from ..bench.responses import HARMONICS
 from ..errors import ZSpringError
 from .settings import Settings
 

@@ -6,18 +6,12 @@ from pathlib import Path
 
 import click
 
-from ..options import format_option, option, output_option
+from ..options import format_option, output_option, settings_argument
 from ..records import claimed
 
 
 @click.command()
-@click.argument("settings_path", type=click.Path(path_type=Path), metavar="SETTINGS.toml", required=False)
-@option(
-    "--example",
-    kind=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Only write an example into this folder: virtual recordings of the FMU, and settings that explain themselves.",
-)
+@settings_argument("virtual recordings of the FMU, and settings that explain themselves")
 @click.option("--uff", is_flag=True, help="Write the responses as a universal file (data sets 58), too.")
 @output_option(described="results/recordings-SETTINGS")
 @format_option

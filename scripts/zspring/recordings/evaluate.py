@@ -15,7 +15,7 @@ from .settings import Settings
 from .signals import Record
 from .sine import (
     FEWEST_PERIODS,
-    HARMONICS,
+    MOST,
     Periods,
     error_of_mean,
     errors_of_means,
@@ -115,7 +115,7 @@ def _measured(
     of_noise = motion_noise * math.sqrt(2 / per_period) * window.to_displacement(name)[0]
 
     def padded(values: np.ndarray) -> np.ndarray:
-        return np.concatenate([values, np.full(HARMONICS - values.size, np.nan)])
+        return np.concatenate([values, np.full(MOST - values.size, np.nan)])
 
     measured = replace(
         point,

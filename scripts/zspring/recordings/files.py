@@ -8,21 +8,20 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bench.responses import phase_degrees
+from ..bench.responses import HARMONICS, phase_degrees
 from ..tables import write_table
 from .groups import Group
 from .points import Point
-from .sine import HARMONICS
+from .sine import MOST
 
 DIGITS = 8
-BEYOND = range(2, HARMONICS + 1)  # the harmonics beyond the fundamental
 
 
 def write_responses(path: Path, head: Mapping[str, str], groups: Sequence[Group]) -> Path:
     """The responses of these groups, in the form that `bench.measured` reads."""
     columns = ["frequency [Hz]", "amplitude [m/s2]", "level"]
     columns += ["magnitude [m/N]", "magnitude_error [m/N]", "phase [deg]", "phase_error [deg]"]
-    columns += [f"harmonic_{k}{what} [N]" for k in BEYOND for what in ("", "_error")]
+    columns += [f"harmonic_{k}{what} [N]" for k in HARMONICS for what in ("", "_error")]
     columns += ["loss [J]", "loss_error [J]", "periods", "status"]
     rows = [
         [
@@ -42,9 +41,7 @@ def write_holds(path: Path, head: Mapping[str, str], points: Sequence[Point]) ->
     """All that was found, used or not."""
     columns = ["file", "begin [s]", "end [s]", "frequency [Hz]", "periods", "periods_found", "status"]
     columns += ["amplitude [m/s2]", "amplitude_scatter [%]", "distortion [%]"]
-    columns += [f"motion_{k} [m]" for k in range(1, HARMONICS + 1)] + [
-        f"force_{k} [N]" for k in range(1, HARMONICS + 1)
-    ]
+    columns += [f"motion_{k} [m]" for k in range(1, MOST + 1)] + [f"force_{k} [N]" for k in range(1, MOST + 1)]
     columns += ["force_noise [N]", "motion_noise [SI]", "force_mean [N]", "force_drift [N]"]
     columns += ["acceleration_over_displacement", "acceleration_over_displacement_phase [deg]", "repeats_after"]
     rows = [

@@ -10,10 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
-from ..bench.responses import phase_degrees
-from ..figures import new_figure
+from ..bench.responses import HARMONICS, phase_degrees
+from ..figures import level_label, new_figure, rising_colors
 from .cycle import Cycle
-from .files import BEYOND
 from .groups import Group
 from .points import Point
 
@@ -26,7 +25,7 @@ def response_figure(groups: Sequence[Group], title: str) -> Figure:
     figure = new_figure(8.5, 7.5)
     magnitude, phase = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
     labels = list(dict.fromkeys(group.label for group in groups))
-    colors = dict(zip(labels, matplotlib.colormaps["plasma"](np.linspace(0, 0.88, len(labels)))))
+    colors = dict(zip(labels, rising_colors(len(labels))))
     for group in groups:
         points = sorted(group.points, key=lambda point: point.frequency)
         frequency, H = group_values(points, "frequency"), group_values(points, "H")
@@ -42,7 +41,7 @@ def response_figure(groups: Sequence[Group], title: str) -> Figure:
         phase.errorbar(frequency, phase_degrees(H, "receptance"), np.degrees(errors[1]), **style)
         marked = np.array([bool(point.marks) for point in points])
         magnitude.plot(frequency[marked], np.abs(H)[marked], "x", color="black", markersize=5, zorder=5)
-    handles = [Line2D([], [], color=color, label=label.replace("s2", "s²")) for label, color in colors.items()]
+    handles = [Line2D([], [], color=color, label=level_label(label)) for label, color in colors.items()]
     for way in dict.fromkeys(group.direction for group in groups):
         text = f"sweep {way}" if way else "measured"
         handles.append(
@@ -70,17 +69,17 @@ def harmonics_figure(groups: Sequence[Group], title: str) -> Figure:
     rows = -(-len(groups) // columns)
     figure = new_figure(4.6 * columns + 1.2, 2.6 * rows + 0.8)
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    colors = dict(zip(BEYOND, matplotlib.colormaps["tab10"](range(len(BEYOND)))))
+    colors = dict(zip(HARMONICS, matplotlib.colormaps["tab10"](range(len(HARMONICS)))))
     for axes, group in zip(panels.flat, groups):
         points = sorted(group.points, key=lambda point: point.frequency)
         frequency = group_values(points, "frequency")
         force, error = (np.array([getattr(p, name) for p in points]) for name in ("force", "force_error"))
-        for k in BEYOND:
+        for k in HARMONICS:
             share, bar = (100 * values[:, k - 1] / force[:, 0] for values in (force, INTERVAL * error))
             share = np.where(share > bar, share, np.nan)
             style = {"ls": "-" if k % 2 else ":", "marker": "o" if k % 2 else "s", "markersize": 2.5, "linewidth": 0.9}
             axes.errorbar(frequency, share, bar, color=colors[k], elinewidth=0.5, label=f"{k}", **style)
-        label = group.label.replace("s2", "s²") + (f", sweep {group.direction}" if group.direction else "")
+        label = level_label(group.label) + (f", sweep {group.direction}" if group.direction else "")
         axes.set(yscale="log", ylim=(2e-2, 1e2))
         axes.set_title(label, fontsize=9)
         axes.grid(True, which="major", linewidth=0.4, alpha=0.5)

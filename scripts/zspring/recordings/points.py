@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .sine import HARMONICS
+from .sine import MOST
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class Point:
     phase_error: float = math.nan  # rad, standard error
     acceleration: float = math.nan  # m/s2, peak
     scatter: float = math.nan  # of the motion's amplitude from period to period, relative, beyond its noise
-    force: np.ndarray = field(default_factory=lambda: np.full(HARMONICS, np.nan))  # N, peaks
-    force_error: np.ndarray = field(default_factory=lambda: np.full(HARMONICS, np.nan))
-    motion: np.ndarray = field(default_factory=lambda: np.full(HARMONICS, np.nan))  # m, peaks
+    force: np.ndarray = field(default_factory=lambda: np.full(MOST, np.nan))  # N, peaks
+    force_error: np.ndarray = field(default_factory=lambda: np.full(MOST, np.nan))
+    motion: np.ndarray = field(default_factory=lambda: np.full(MOST, np.nan))  # m, peaks
     distortion: float = math.nan  # harmonics 2.. of the velocity over its fundamental
     force_noise: float = math.nan  # N, rms of what is not periodic
     motion_noise: float = math.nan  # m or m/s2

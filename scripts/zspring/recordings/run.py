@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,6 +13,7 @@ from ..bench.uff_file import pyuff_package
 from ..bench.uff_file import write_responses as write_universal
 from ..errors import ZSpringError, tell
 from ..figures import save
+from ..heads import content_of
 from ..records import keep_others
 from . import report
 from .cycle import cycle_of
@@ -122,13 +122,12 @@ def _write_responses(folder: Path, head: dict[str, str], groups: Sequence[Group]
 
 def _head(settings: Settings) -> dict[str, str]:
     """All that defines the numbers."""
-    paths = [file.path for file in settings.recording]
     head = {
         "H": "-Z/F, components at the drive frequency of head displacement Z and contact force F",
         "to read it": 'force = "specimen", fixture_mass = 0: signs and fixture are accounted for',
         "errors": "standard errors, +- 1.96 of which is a 95 % interval",
         **{f"setting {key}": repr(value) for key, value in settings if key != "recording"},
-        **{f"file {i}": f"{hashlib.sha256(path.read_bytes()).hexdigest()} {path}" for i, path in enumerate(paths, 1)},
+        **content_of(file.path for file in settings.recording),
     }
     if settings.static_force is not None:
         head["static_force"] = f"{settings.static_force:g} N"

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-HARMONICS = 7
+from ..bench.responses import HARMONICS
+
+MOST = HARMONICS[-1]  # harmonics that are told
 MOST_ROUNDS = 30
 FEWEST_PERIODS = 5  # whose scatter tells an error
 DISTURBED = 3.0  # times the usual residual of a period
@@ -26,8 +28,8 @@ def basis(time: np.ndarray, frequency: float, harmonics: int) -> np.ndarray:
 
 
 def harmonics_within(rate: float, frequency: float) -> int:
-    """How many harmonics a sampling rate in Hz tells, at most HARMONICS, with a third of the values left for noise."""
-    return int(min(HARMONICS, 0.3 * rate / frequency))
+    """How many harmonics a sampling rate in Hz tells, at most MOST, with a third of the values left for noise."""
+    return int(min(MOST, 0.3 * rate / frequency))
 
 
 def fit_frequency(time: np.ndarray, values: np.ndarray, guess: float, harmonics: int) -> float:
