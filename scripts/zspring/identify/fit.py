@@ -124,15 +124,14 @@ def _solve(problem: Problem, x: np.ndarray, held: np.ndarray, progress: Callable
 
     def at(x: np.ndarray) -> tuple[Answer, float]:
         (answer,) = problem.answers([x])
-        residuals = problem.residuals(answer)
-        cost = 0.5 * float(residuals @ residuals)
+        cost = problem.cost(answer)
         progress(cost)
         return answer, cost
 
     answer, cost = at(x)
     found = Solution(x, answer, cost, problem.jacobian(x, answer, range(x.size)))
     while True:
-        x, message, is_converged, count = descend(problem, found, held, progress)
+        x, _, message, is_converged, count = descend(problem, found, held, progress)
         found = replace(found, message=message, is_converged=is_converged, evaluations=found.evaluations + count)
         answer, cost = at(x)
         if cost >= found.cost:
@@ -155,8 +154,8 @@ def _way(problem: Problem, found: Solution, x: np.ndarray) -> float:
 
 def descend(
     problem: Problem, start: Solution, held: np.ndarray, progress: Callable[[float], None]
-) -> tuple[np.ndarray, str, bool, int]:
-    """scipy's least squares: its x, message, whether it converged, and its evaluations.
+) -> tuple[np.ndarray, float, str, bool, int]:
+    """scipy's least squares: its x, the cost there, its message, whether it converged, and its evaluations.
 
     Where a Jacobian is costly it is made up to date from the evaluations (Broyden, A class of methods for solving
     nonlinear simultaneous equations, 1965) as long as it foretells them.
@@ -205,4 +204,4 @@ def descend(
         gtol=None,
         max_nfev=MOST_EVALUATIONS,
     )
-    return complete(result.x), result.message, bool(result.status > 0), result.nfev
+    return complete(result.x), float(result.cost), result.message, bool(result.status > 0), result.nfev

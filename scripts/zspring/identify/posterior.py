@@ -49,8 +49,7 @@ def sample(problem: Problem, fit: Fit, draws: int, seed: int, costs: Callable[[n
     variance = problem.variance(fit.cost, residuals - fit.x.size)
     precision = fit.jacobian.T @ fit.jacobian / variance + np.eye(fit.x.size) / PRIOR
     mean, covariance = fit.x, np.linalg.inv(precision)
-    xs, cost, proposals = np.empty((0, fit.x.size)), np.empty(0), []
-    weights = np.empty(0)
+    xs, cost, weights, proposals = np.empty((0, fit.x.size)), np.empty(0), np.empty(0), []
     for part in range(ROUNDS):
         count = draws // ROUNDS + (part < draws % ROUNDS)
         proposal = multivariate_t(mean, covariance * (FREEDOM - 2) / FREEDOM, df=FREEDOM, seed=rng)

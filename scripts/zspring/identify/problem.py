@@ -27,8 +27,8 @@ BY_CHANCE = 0.95  # of sums of squares
 PENALTY = 10.0
 
 
-def _finite(off: np.ndarray, otherwise: float) -> np.ndarray:
-    return np.where(np.isfinite(off), off, otherwise)
+def _penalised(off: np.ndarray) -> np.ndarray:
+    return np.where(np.isfinite(off), off, PENALTY)
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ class Problem:
                     wanted = as_quantity(curve.H, quantity, curve.frequency)
                     scale = np.sqrt(np.mean(np.abs(wanted) ** 2))
                     error = (as_quantity(H, quantity, curve.frequency) - wanted) / scale
-            off = _finite(np.column_stack([error.real, error.imag]), PENALTY)
+            off = _penalised(np.column_stack([error.real, error.imag]))
             if self.is_weighted and curve.error is not None:
                 off /= np.hypot(curve.error, SETTLED.tolerance)  # the model's own scatter
             parts.append((POINTS, off.T.ravel()))
@@ -197,7 +197,7 @@ class Problem:
                     np.concatenate([curve.error[:, 0] for curve in self.curves if curve.error is not None])
                 )
             error = weight * (force - wanted)
-            parts.append(("static test", _finite(error, PENALTY)))
+            parts.append(("static test", _penalised(error)))
         return parts
 
     def _harmonics(self, curve: Curve, computed: np.ndarray) -> np.ndarray:
@@ -206,7 +206,7 @@ class Problem:
         columns = [HARMONICS.index(order) for order in self.settings.harmonics]
         first = np.abs(curve.displacement / curve.H)[:, None]
         scale = np.hypot(curve.harmonics.error, SETTLED.tolerance * first) if self.is_weighted else first
-        return _finite(((computed - curve.harmonics.peak) / scale)[:, columns].ravel(), PENALTY)
+        return _penalised(((computed - curve.harmonics.peak) / scale)[:, columns].ravel())
 
     def variance(self, cost: float, freedom: int) -> float:
         """Of a residual, at the solution with this cost; `freedom`: how many residuals more than parameters.
@@ -229,7 +229,11 @@ class Problem:
 
     def costs(self, xs: Sequence[np.ndarray], like: Answer | None = None) -> np.ndarray:
         """Half the sum of squared residuals for each x, shape (len(xs),); `like` as in Model.answers."""
-        return np.array([0.5 * np.sum(self.residuals(answer) ** 2) for answer in self.answers(xs, like)])
+        return np.array([self.cost(answer) for answer in self.answers(xs, like)])
+
+    def cost(self, answer: Answer) -> float:
+        """Half the sum of squared residuals."""
+        return 0.5 * float(np.sum(self.residuals(answer) ** 2))
 
     def jacobian(self, x: np.ndarray, answer: Answer, columns: Collection[int]) -> np.ndarray:
         """d residuals / dx (m, len(columns)) at x, whose answer it is, by one-sided differences."""

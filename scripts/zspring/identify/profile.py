@@ -50,8 +50,8 @@ def profile_interval(
 def _least(problem: Problem, fit: Fit, x: np.ndarray, held: np.ndarray, progress: Callable[[float], None]) -> float:
     """Least cost with some parameters held as in x (n,)."""
     (answer,) = problem.answers([x], fit.answer)
-    (cost,) = problem.costs([x], fit.answer)
+    cost = problem.cost(answer)
     if held.all():
-        return float(cost)
-    end, *_ = descend(problem, Solution(x, answer, float(cost), fit.jacobian), held, progress)
-    return min(float(cost), float(problem.costs([end], fit.answer)[0]))
+        return cost
+    _, least, *_ = descend(problem, Solution(x, answer, cost, fit.jacobian), held, progress)
+    return min(cost, least)
