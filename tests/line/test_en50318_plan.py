@@ -45,7 +45,7 @@ def test_the_reference_runs_are_the_cases_of_the_edition(references):
         ("300 km/h", 300, "reference", "EN 50318:2002"),
     ]
     for run in references:
-        assert run.section == Section(5, 6, 60.0) and run.section.bounds == (240.0, 360.0)
+        assert run.section == Section.alike(5, 6, 60.0) and run.section.bounds == (240.0, 360.0)
         assert (
             run.pantograph["static_force"] == 120
             and run.pantograph["solver.step"] == 5e-4
@@ -72,7 +72,7 @@ def test_each_choice_changes_what_it_names_and_nothing_else_and_stops_behind_wha
             for name, value in choice.run.items():
                 assert getattr(run, name) == value != getattr(reference, name)
             spans = choice.spans or (5, 6)
-            assert run.section == Section(*spans, 60.0)
+            assert run.section == Section.alike(*spans, 60.0)
             assert run.stop == pytest.approx(spans[1] * 60.0 + 0.4 * reference.speed / 3.6)
             left = {name: getattr(reference, name) for name in (*named, "line", "section", "stop", *choice.run)}
             assert replace(run, **left) == reference
@@ -84,7 +84,7 @@ def test_anything_that_changes_the_numbers_changes_the_key(references):
         replace(run, speed=251.0),
         replace(run, uplift=1.0),
         replace(run, step=2e-3),
-        replace(run, section=Section(4, 6, 60.0)),
+        replace(run, section=Section.alike(4, 6, 60.0)),
         replace(run, line={**run.line, "gravity": 9.8}),
         replace(run, pantograph={**run.pantograph, "m1": 7.0}),
     ]
@@ -117,7 +117,7 @@ def test_all_heads_run_with_the_mean_force_of_the_law_from_places_over_the_first
 def test_heads_are_evaluated_before_the_far_end_is_felt(fmus, speed, spans):
     """Spans of 55 m, waves of 127.66 m/s: at 200 km/h the front is met after 2 * 550 / (127.66 + 55.56) s, 333.5 m."""
     run = head_runs(*fmus, (speed,))[0]
-    assert run.section == Section(*spans, 55.0)
+    assert run.section == Section.alike(*spans, 55.0)
     until = speed / 3.6 * 2 * 550 / ((22000 / 1.35) ** 0.5 + speed / 3.6)
     assert run.section.bounds[1] <= until < run.section.bounds[1] + 55
     assert run.stop > run.section.bounds[1]
@@ -140,7 +140,7 @@ def test_the_first_and_the_last_span_of_a_line_are_not_evaluated(fmus, spans, fi
     case = read_edition(packaged_edition("en-50318-2002")).cases[0]
     case = case.model_copy(update={"first_span": spans[0], "last_span": spans[1]})
     if fits:
-        assert section_of(case, fmus[0], {"line.spans": 10}) == Section(*spans, 60.0)
+        assert section_of(case, fmus[0], {"line.spans": 10}) == Section.alike(*spans, 60.0)
     else:
         with pytest.raises(ZSpringError, match=rf"spans {spans[0]} to {spans[1]}: must be in 2 \.\. 9"):
             section_of(case, fmus[0], {"line.spans": 10})
@@ -169,12 +169,12 @@ def passage(begin: float, end: float, second: float = 0.0) -> LineResult:
 @pytest.mark.parametrize("spans, middle", [(4, (2, 3)), (5, (3, 3)), (6, (3, 4)), (7, (4, 4))])
 def test_the_middle_spans_are_evaluated(spans, middle):
     result = passage(0.0, 50.0 * spans)
-    assert evaluated(result, 0, LineExtent(spans, 50.0)) == Section(*middle, 50.0)
+    assert evaluated(result, 0, LineExtent.alike(spans, 50.0)) == Section.alike(*middle, 50.0)
 
 
 def test_a_pantograph_that_has_not_run_through_the_middle_is_evaluated_over_its_last_whole_spans():
     """The first span after the start does not count; None: there is no whole one."""
-    line = LineExtent(6, 50.0)  # the middle is from 100 to 200 m
+    line = LineExtent.alike(6, 50.0)  # the middle is from 100 to 200 m
     for begin, end, second, first, other in (
         (40.0, 210.0, 0.0, (3, 4), (3, 4)),
         (50.0, 200.0, 0.0, (3, 4), (3, 4)),
@@ -184,13 +184,13 @@ def test_a_pantograph_that_has_not_run_through_the_middle_is_evaluated_over_its_
         (51.0, 199.0, 0.0, None, None),
     ):
         result = passage(begin, end, second)
-        expected = [spans and Section(*spans, 50.0) for spans in (first, other)]
+        expected = [spans and Section.alike(*spans, 50.0) for spans in (first, other)]
         assert [evaluated(result, i, line) for i in (0, 1)] == expected
 
 
 def test_the_summary_has_the_figures_of_each_pantograph():
     result = passage(40.0, 210.0, 20.0)
-    lines = summary(result, sections(result, LineExtent(6, 50.0), None))
+    lines = summary(result, sections(result, LineExtent.alike(6, 50.0), None))
     assert lines[0] == "0-20 Hz, over spans 3 to 4, 100 to 200 m and span 3, 100 to 150 m"
     rows = {line[:27].strip(): line[27:].split() for line in lines[1:]}
     assert rows["mean force"] == ["100.0", "110.0", "N"]

@@ -113,7 +113,7 @@ def changed(values: np.ndarray, at: int, value: float) -> np.ndarray:
 def test_tables_as_other_tools_write_them(columns, tmp_path):
     """MATLAB's names, those of `zspring simulate`, seconds since 1970: figures as of the plain table."""
     plain = write(tmp_path / "a.csv", {"time [s]": TIME, "contact force [N]": FORCE, "position [m]": POSITION})
-    section = Section(2, 2, 50.0)
+    section = Section.alike(2, 2, 50.0)
     expected, found = (statistics(read_series(path), section) for path in (plain, write(tmp_path / "b.csv", columns)))
     assert found == pytest.approx(expected, rel=1e-6, nan_ok=True)
 

@@ -11,7 +11,7 @@ from zspring.line.series import Series
 from zspring.line.statistics import Section, low_pass, statistics
 
 SPEED = 70.0  # m/s
-MIDDLE = Section(3, 8, 70.0)  # of 10 s at SPEED: 2 to 8 s
+MIDDLE = Section.alike(3, 8, 70.0)  # of 10 s at SPEED: 2 to 8 s
 
 
 def gain(frequency: float, cutoff: float, rate: float = 1000.0) -> float:
@@ -115,8 +115,8 @@ def test_each_span_is_evaluated_for_itself():
 
 def test_a_section_may_be_all_of_the_series_but_no_more():
     force = series(lambda t: 100.0 + 10 * (t >= 9))  # the tenth span of 70 m alone
-    assert statistics(force, Section(1, 10, 70.0))["mean_force"] == pytest.approx(101, abs=0.2)
-    for section in Section(1, 10, 70.0, start=-0.01), Section(1, 10, 70.0, start=0.01):
+    assert statistics(force, Section.alike(1, 10, 70.0))["mean_force"] == pytest.approx(101, abs=0.2)
+    for section in Section.alike(1, 10, 70.0, start=-0.01), Section.alike(1, 10, 70.0, start=0.01):
         with pytest.raises(ZSpringError, match="the series has 0 to 700 m"):
             statistics(force, section)
 
@@ -139,9 +139,9 @@ def test_uplift_is_that_of_supports_in_the_section_and_its_ends():
 def test_spans_outside_the_line_are_refused():
     force = series(lambda t: 100 + t)
     with pytest.raises(ZSpringError, match=r"spans 9 to 11, 560 to 770 m: the series has 0 to 700 m"):
-        statistics(force, Section(9, 11, 70.0))
+        statistics(force, Section.alike(9, 11, 70.0))
     with pytest.raises(ZSpringError, match="-50 to 20 m: the series has 0"):
-        statistics(force, Section(1, 1, 70.0, start=-50))
+        statistics(force, Section.alike(1, 1, 70.0, start=-50))
     without = Series("test", force.time, force.force)
     with pytest.raises(ZSpringError, match="needs positions, or the speed"):
         statistics(without, MIDDLE)

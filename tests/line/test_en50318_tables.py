@@ -160,7 +160,7 @@ def test_the_box_counts_what_is_inside(values, said, look):
 
 def test_the_limit_of_current_collection_is_told_apart_from_the_ranges():
     bad = {**FOUND, "standard_deviation": 30.6}
-    *_, ranges, share = summary.row("x", "p", "l", None, Section(5, 6, 60.0), None, bad)
+    *_, ranges, share = summary.row("x", "p", "l", None, Section.alike(5, 6, 60.0), None, bad)
     assert ranges.text == "not for this pantograph" and (share.text, share.look) == ("0.306, outside", BAD)
     assert summary.shares("X", {"slow": FOUND, "fast": bad}) == (
         "X: standard deviation / mean force, at most 0.3: 0.290, inside, at slow; 0.306, outside, at fast"
@@ -276,7 +276,7 @@ def test_a_series_is_told_span_by_span_where_there_are_several(first, last, tabl
     time = np.arange(4001) / 1000
     force = np.where(time < 2, 100.0, 120.0)  # span 2 from 1 to 2 s, span 3 from 2 to 3 s
     series = Series("mine", time, force, 50 * time)
-    chapter = series_chapter(series, Section(first, last, 50.0), None, "Contact force")
+    chapter = series_chapter(series, Section.alike(first, last, 50.0), None, "Contact force")
     found = [block for block in chapter.blocks if isinstance(block, Table)]
     assert len(found) == tables
     assert chapter.blocks[0] == "mine: 4001 samples, one each 1 ms."
@@ -289,8 +289,8 @@ def test_a_series_is_told_span_by_span_where_there_are_several(first, last, tabl
 
 def test_the_spans_asked_for_go_before_those_of_the_case():
     data = OwnData(Path("a"), None, EDITION, None, None, (3, 4), 65.0, 10.0, 1)
-    assert data.section(None, None, []) == Section(3, 4, 65.0, 10.0)
-    assert Section(3, 4, 65.0, 10.0).bounds == (140.0, 270.0)
+    assert data.section(None, None, []) == Section.alike(3, 4, 65.0, 10.0)
+    assert Section.alike(3, 4, 65.0, 10.0).bounds == (140.0, 270.0)
     whole = OwnData(Path("a"), None, EDITION, None, None, None, 65.0, 10.0, 1)
     assert whole.section(None, None, []) is None
 

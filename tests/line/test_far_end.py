@@ -41,14 +41,14 @@ def test_wave_speeds_are_those_of_strings(fmus):
 def test_front_and_pantograph_are_at_one_place_at_one_time(speed, length, behind):
     """The front is at the end and back again when the pantograph is there."""
     journey = FittedJourney(speed, 70.0, length)
-    place = undisturbed_until(LineExtent(1, length), journey, behind, 120.0)
+    place = undisturbed_until(LineExtent.alike(1, length), journey, behind, 120.0)
     assert place < length
     assert (length - 70.0 + length - place) / 120.0 == pytest.approx((place - 70.0 + behind) / speed)
 
 
 @pytest.mark.parametrize("speed", [120.0, 150.0])
 def test_a_pantograph_as_fast_as_the_wave_meets_it_at_the_end(speed):
-    assert undisturbed_until(LineExtent(1, 600.0), FittedJourney(speed, 70.0, 600.0), 0.0, 120.0) == 600.0
+    assert undisturbed_until(LineExtent.alike(1, 600.0), FittedJourney(speed, 70.0, 600.0), 0.0, 120.0) == 600.0
 
 
 @pytest.mark.parametrize("name, kmh", [("en-50318-2002", 250.0), ("benchmark-2015", 160.0)])
@@ -88,7 +88,7 @@ def passage(begin: float, end: float, until: float) -> LineResult:
     )
 
 
-LINE = LineExtent(10, 50.0)
+LINE = LineExtent.alike(10, 50.0)
 
 
 @pytest.mark.parametrize(
@@ -104,27 +104,27 @@ LINE = LineExtent(10, 50.0)
     ],
 )
 def test_what_is_evaluated_by_default_ends_before_the_far_end_tells(begin, end, until, spans):
-    assert evaluated(passage(begin, end, until), 0, LINE) == (spans and Section(*spans, 50.0))
+    assert evaluated(passage(begin, end, until), 0, LINE) == (spans and Section.alike(*spans, 50.0))
 
 
 def test_a_run_that_has_nothing_else_is_evaluated_where_it_is_asked_for_alone():
     result = passage(25.0, 475.0, 149.9)
     with pytest.raises(ZSpringError, match=r"no whole span between 75 m, a span after the start, and 149\.9 m"):
         sections(result, LINE, None)
-    assert sections(result, LINE, (5, 6)) == [Section(5, 6, 50.0)]
+    assert sections(result, LINE, (5, 6)) == [Section.alike(5, 6, 50.0)]
     assert sections(passage(60.0, 149.0, 300.0), LINE, None) == [None]
 
 
 def test_the_summary_says_from_where_on_the_far_end_tells():
     told = f"from 300 m on {FAR_END}"
-    assert summary(passage(25.0, 475.0, 300.0), [Section(5, 6, 50.0)])[-1] == told
+    assert summary(passage(25.0, 475.0, 300.0), [Section.alike(5, 6, 50.0)])[-1] == told
     assert told not in summary(passage(25.0, 299.0, 300.0), [None])
 
 
 def test_sections_beyond_are_warned_of():
     series = passage(25.0, 475.0, 300.0).series(0)
-    assert of_series(series, Section(5, 6, 50.0)) == []
-    for section, end in ((Section(5, 7, 50.0), 350), (None, 475)):
+    assert of_series(series, Section.alike(5, 6, 50.0)) == []
+    for section, end in ((Section.alike(5, 7, 50.0), 350), (None, 475)):
         (line,) = of_series(series, section)
         assert f"goes to {end} m, but from 300 m on {FAR_END}" in line
     assert of_series(replace(series, stated=Stated()), None) == []

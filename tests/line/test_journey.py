@@ -13,7 +13,7 @@ from zspring.line.journey import Journey, LineExtent
 from zspring.line.run import LineRun
 from zspring.line.system import System
 
-LINE = LineExtent(4, 60.0)  # 240 m
+LINE = LineExtent.alike(4, 60.0)  # 240 m
 RUN = {"speed": 50.0, "start": 30.0, "stop": 210.0}
 
 
@@ -30,6 +30,31 @@ def test_runs_go_from_half_a_span_inside_to_half_a_span_inside():
     assert (two.start, two.stop, two.spacing) == (70, 210, 40)
     own = LINE.complete(Journey(50.0, 45.0, 90.0, spacing=40.0), 2)
     assert (own.start, own.stop) == (45, 90)
+
+
+UNLIKE = LineExtent(np.array([0.0, 50.0, 115.0, 170.0, 230.0]))
+
+
+def test_unlike_spans_count_with_their_own_lengths():
+    """Margins are half of the spans at the ends, a run starts up over the span it starts in."""
+    assert (UNLIKE.spans, UNLIKE.length) == (4, 230)
+    assert [UNLIKE.span_of(x) for x in (0.0, 49.9, 50.0, 114.9, 170.0, 230.0)] == [1, 1, 2, 2, 4, 4]
+    assert [UNLIKE.run_up(x) for x in (0.0, 50.0, 120.0, 229.0)] == [50, 65, 55, 60]
+    found = UNLIKE.complete(Journey(50.0, spacing=10.0), 2)
+    assert (found.start, found.stop) == (35, 200)
+    assert UNLIKE.whole_spans(50.0, 229.9) == (2, 3)
+    assert UNLIKE.whole_spans(51.0, 114.0) == (3, 1)
+    assert UNLIKE.whole_spans(0.0, 230.0) == (1, 4)
+
+
+def test_sections_of_unlike_spans_end_at_their_supports():
+    section = UNLIKE.section(2, 3)
+    assert section.bounds == (50, 170) and section.span is None
+    assert [one.bounds for one in section.single_spans()] == [(50, 115), (115, 170)]
+    assert [str(one) for one in section.moved(5.0).single_spans()] == ["span 2, 55 to 120 m", "span 3, 120 to 175 m"]
+    for wrong in (0, 2), (3, 2), (4, 5):
+        with pytest.raises(ZSpringError, match=r"must be in 1 \.\. 4, the spans of the line"):
+            UNLIKE.section(*wrong)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from ..errors import ZSpringError
@@ -26,16 +25,20 @@ SHOWN = (
 def evaluated(result: LineResult, i: int, line: LineExtent) -> Section | None:
     """The middle spans of the line, farthest from its ends, or the last two whole spans before the far end is felt.
 
-    None where pantograph i runs through no whole span there. The first span after the start does not count, as the
-    start-up is there.
+    None where pantograph i runs through no whole span there. What the start-up takes does not count.
     """
-    begin, end = result.position[0, i] + line.span, min(result.position[-1, i], result.undisturbed_until[i])
-    middle = Section((line.spans + 1) // 2, line.spans // 2 + 1, line.span)
+    begin, end = _started(result, i, line), min(result.position[-1, i], result.undisturbed_until[i])
+    middle = line.section((line.spans + 1) // 2, line.spans // 2 + 1)
     low, high = middle.bounds
     if begin <= low and high <= end:
         return middle
-    first, last = math.ceil(begin / line.span - 1e-9) + 1, math.floor(end / line.span + 1e-9)
-    return Section(max(first, last - 1), last, line.span) if first <= last else None
+    first, last = line.whole_spans(begin, end)
+    return line.section(max(first, last - 1), last) if first <= last else None
+
+
+def _started(result: LineResult, i: int, line: LineExtent) -> float:
+    """Where pantograph i has started up, m."""
+    return float(result.position[0, i]) + line.run_up(float(result.position[0, 0]))
 
 
 def sections(result: LineResult, line: LineExtent, spans: tuple[int, int] | None) -> list[Section | None]:
@@ -44,12 +47,12 @@ def sections(result: LineResult, line: LineExtent, spans: tuple[int, int] | None
     Raises ZSpringError where that would be nothing but start-up and what the far end reflects.
     """
     if spans:
-        return [Section(*spans, line.span)] * result.position.shape[1]
+        return [line.section(*spans)] * result.position.shape[1]
     found = [evaluated(result, i, line) for i in range(result.position.shape[1])]
     for i, until in enumerate(result.undisturbed_until):
         if found[i] is None and result.position[-1, i] > until:
             raise ZSpringError(
-                f"no whole span between {result.position[0, i] + line.span:.4g} m, a span after the start, and "
+                f"no whole span between {_started(result, i, line):.4g} m, a span after the start, and "
                 f"{until:.4g} m, where the far end begins to tell: take a longer line (line.spans), or choose --spans"
             )
     return found

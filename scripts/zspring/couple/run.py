@@ -130,11 +130,12 @@ def compare_and_write(system: System, folder: Path, suffix: str, what: str = "")
     """
     with LineRun(system) as run:
         extent, journey, head = run.line, run.journey, run.settings
-    least = journey.start + extent.span + journey.speed * max(STEPS)
+    run_up = extent.run_up(journey.start)
+    least = journey.start + run_up + journey.speed * max(STEPS)
     if journey.stop < least:
         raise ZSpringError(
             f"stop = {journey.stop:g} m: with --compare-steps must be at least {least:g} m, one step of "
-            f"{max(STEPS):g} s more than a span of {extent.span:g} m after the start, {journey.start:g} m"
+            f"{max(STEPS):g} s more than a span of {run_up:g} m after the start, {journey.start:g} m"
         )
     paths = folder / "steps.csv", folder / f"steps.{suffix}"
     keep_others(paths[0], head)
@@ -150,7 +151,7 @@ def compare_and_write(system: System, folder: Path, suffix: str, what: str = "")
     rows, stopped, speed = [], None, f"{3.6 * system.journey.speed:g} km/h"
     try:
         with bar:
-            for row in compare_steps(one, system.coupling, extent.span):
+            for row in compare_steps(one, system.coupling, run_up):
                 rows.append(row)
     except (Interrupted, ZSpringError) as error:
         stopped = error

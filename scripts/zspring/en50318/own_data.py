@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..bench.compare import compare_frf, write_comparison
@@ -78,13 +78,13 @@ class OwnData:
         begins = {"--first-support": self.first_support, **{n: head.first_support for n, head in heads.items()}}
         begin = agreed("first support", "m", begins) or 0.0
         if not self.spans:
-            return replace(of_case, start=begin) if of_case else None
+            return of_case.moved(begin) if of_case else None
         if span is None:
             raise ZSpringError("--spans: needs the length of a span, --span L; no file says it in its head")
         for name, head in heads.items():
             if head.spans and self.spans[1] > head.spans:
                 raise ZSpringError(f"spans {self.spans[0]} to {self.spans[1]}: {name} says that there are {head.spans}")
-        return Section(*self.spans, span, begin)
+        return Section.alike(*self.spans, span, begin)
 
 
 def report_on(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
@@ -128,10 +127,10 @@ def sensitivity_runs(references: Sequence[Run], catenary: Fmu) -> list[Run]:
         for choice in CHOICES:
             changed = replace(run, line={**run.line, **choice.line}, **choice.run)
             changed = replace(changed, group="sensitivity", label=choice.label, of=f"{run.of}, {run.label}", series="")
+            extent = LineExtent.of(catenary, changed.line)
             if choice.spans:
                 first, last = choice.spans
-                changed = replace(changed, section=replace(run.section, first=first, last=last))
-            extent = LineExtent.of(catenary, changed.line)
+                changed = replace(changed, section=extent.section(first, last))
             runs.append(replace(changed, stop=_stop(changed.section, changed.speed, extent)))
     return runs
 
@@ -159,7 +158,7 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
             for i in range(STARTS if head.every_start else 1):
                 is_kept = head.is_drawn and speed == shown and i == 0
                 series = f"{slug(head.label)}-{speed:g}-km-h.csv" if is_kept else ""
-                runs.append(replace(run, start=i * extent.span / STARTS, stop=stop, series=series))
+                runs.append(replace(run, start=i * extent.span_length(1) / STARTS, stop=stop, series=series))
     return runs
 
 
@@ -171,13 +170,13 @@ def _stop(section: Section, speed: float, extent: LineExtent) -> float:
 def _head_section(speed: float, extent: LineExtent, wave: float) -> Section:
     """The spans to evaluate at `speed` km/h. Raises ZSpringError where the far end is felt before there is one."""
     until = undisturbed_until(extent, FittedJourney(speed / 3.6, 0.0, extent.length), 0.0, wave)
-    last = math.floor(until / extent.span + 1e-9)
+    _, last = extent.whole_spans(0.0, until)
     if last < FIRST_HEAD_SPAN:
         raise ZSpringError(
             f"--head-speeds {speed:g} km/h: too slow for the line of {extent.spans} spans, whose far end is felt from "
             f"{until:.0f} m on"
         )
-    return Section(max(FIRST_HEAD_SPAN, last - HEAD_SPANS + 1), last, extent.span)
+    return extent.section(max(FIRST_HEAD_SPAN, last - HEAD_SPANS + 1), last)
 
 
 def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run:
@@ -210,7 +209,7 @@ def section_of(case: Case, catenary: Fmu, line: Parameters) -> Section:
             f"{case.title}: spans {first} to {last}: must be in 2 .. {extent.spans - 1}, between the first and "
             f"the last span of the line"
         )
-    return Section(first, last, extent.span)
+    return extent.section(first, last)
 
 
 def slug(text: str) -> str:

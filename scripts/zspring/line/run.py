@@ -50,6 +50,7 @@ class LineRun:
     def __init__(self, system: System):
         self.line = system.extent
         self.journey = journey = self.line.complete(system.journey, len(system.pantographs))
+        self._run_up = self.line.run_up(journey.start)
         self.system = replace(system, journey=journey)
         self.steps = math.floor((journey.stop - journey.start) / (journey.speed * journey.step) + 1e-9)
         self._static_forces = system.of_each("static_force")
@@ -169,8 +170,8 @@ class LineRun:
         """How much lower than the catenary says the pantographs meet the wire, m; sets the ramp's uplift."""
         if self.journey.start_up == "direct":
             return self.lifted
-        travelled = now * self.journey.speed / self.line.span
-        if travelled >= 1.0 + self.journey.step * self.journey.speed / self.line.span:
+        travelled = now * self.journey.speed / self._run_up
+        if travelled >= 1.0 + self.journey.step * self.journey.speed / self._run_up:
             return [0.0] * len(self.lifted)
         rest = 0.5 * (1.0 + math.cos(math.pi * min(travelled, 1.0)))
         for input_of, uplift in zip(self._uplifts, self.journey.uplift):

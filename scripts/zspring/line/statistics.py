@@ -45,17 +45,34 @@ Statistics = dict[str, float]  # by name, in the units of FIGURES; NaN where the
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the line: spans first to last, counted from 1, of this length from `start` on; in m."""
+    """A part of the line: spans first to last, counted from 1.
+
+    edges   where each of them begins, and the last one ends, m
+    """
 
     first: int
     last: int
-    span: float
-    start: float = 0.0
+    edges: tuple[float, ...]
+
+    @classmethod
+    def alike(cls, first: int, last: int, span: float, start: float = 0.0) -> Section:
+        """Spans of one length, the first one of the line from `start` on; in m."""
+        return cls(first, last, tuple(start + n * span for n in range(first - 1, last + 1)))
 
     @property
     def bounds(self) -> tuple[float, float]:
         """Where it begins and ends in m."""
-        return self.start + (self.first - 1) * self.span, self.start + self.last * self.span
+        return self.edges[0], self.edges[-1]
+
+    @property
+    def span(self) -> float | None:
+        """Length of each of its spans in m; None where they are not alike."""
+        lengths = np.diff(self.edges)
+        return float(lengths[0]) if np.ptp(lengths) < 1e-6 else None
+
+    def moved(self, by: float) -> Section:
+        """The same spans `by` m further along."""
+        return Section(self.first, self.last, tuple(edge + by for edge in self.edges))
 
     def __str__(self) -> str:
         spans = f"span {self.first}" if self.first == self.last else f"spans {self.first} to {self.last}"
@@ -63,7 +80,7 @@ class Section:
 
     def single_spans(self) -> list[Section]:
         """Its spans one by one."""
-        return [Section(n, n, self.span, self.start) for n in range(self.first, self.last + 1)]
+        return [Section(self.first + i, self.first + i, self.edges[i : i + 2]) for i in range(len(self.edges) - 1)]
 
 
 def low_pass(series: np.ndarray, step: float, cutoff: float = BAND, order: int = ORDER) -> np.ndarray:
