@@ -7,6 +7,7 @@ import importlib.resources
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from copy import copy
 from ctypes import byref, c_void_p
 from pathlib import Path
 
@@ -15,7 +16,9 @@ import fmpy.fmi2
 from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ScalarVariable
 
+from . import line_table
 from .errors import ZSpringError
+from .line_table import LineTable
 from .variables import Value, Variables
 
 PANTOGRAPH = "ZSpringPantograph"
@@ -66,12 +69,24 @@ class Fmu:
         self._temporary = tempfile.TemporaryDirectory(prefix="zspring-", dir=unpack_in, ignore_cleanup_errors=True)
         self.folder = Path(self._temporary.name)
         fmpy.extract(self.path, self.folder)
+        self.guid = self.description.guid
+        self.home = self.folder  # with `resources`
+        own = self.folder / "resources" / line_table.FILE
+        self.line: LineTable | None = LineTable.read(own) if own.is_file() else None
+
+    def with_line(self, line: LineTable) -> Fmu:
+        """The same FMU, while it is open, with another line in its resources, as instances are told by their GUID."""
+        other = copy(self)
+        other.line, other.home = line, self.folder / f"line-{line.digest}"
+        other.guid = line_table.guid(self.description.guid, line)
+        line.write(other.home / "resources" / line_table.FILE)
+        return other
 
     @property
     def identity(self) -> dict[str, str]:
         """Model, version and GUID, for the head of a file."""
         description = self.description
-        return {"FMU": f"{description.modelName} {description.version}", "GUID": description.guid}
+        return {"FMU": f"{description.modelName} {description.version}", "GUID": self.guid}
 
     @property
     def sha256(self) -> str:
@@ -88,6 +103,13 @@ class Fmu:
                 stack.callback(instance.free)
                 instances.append(instance)
             yield instances
+
+    @property
+    def parameter_names(self) -> list[str]:
+        """Names of all parameters that count, calculated ones included: with a line's table, not those it replaces."""
+        names, given = self.variables.names("parameter", "calculatedParameter"), self.variables.names("parameter")
+        replaced = {name for name in given if line_table.replaces(name)} if self.line else set()
+        return [name for name in names if name not in replaced]
 
     def used_parameters(self, parameters: Mapping[str, Value]) -> dict[str, Value]:
         """Instance.used_parameters of an instance that is started with these. Raises FmuError for a refused one."""
@@ -125,7 +147,7 @@ class Instance:
     """
 
     def __init__(self, fmu: Fmu, name: str, library: Path):
-        self.variables = fmu.variables
+        self.variables, self._parameter_names = fmu.variables, fmu.parameter_names
         self._warnings = fmu.warnings
         self._log: list[str] = []
         self._used = False
@@ -136,8 +158,8 @@ class Instance:
         try:
             self.slave = fmpy.fmi2.FMU2Slave(
                 instanceName=name,
-                guid=fmu.description.guid,
-                unzipDirectory=str(fmu.folder),
+                guid=fmu.guid,
+                unzipDirectory=str(fmu.home),
                 modelIdentifier=fmu.description.coSimulation.modelIdentifier,
                 libraryPath=str(library),
             )
@@ -187,9 +209,8 @@ class Instance:
         return [values[name] for name in names]
 
     def used_parameters(self) -> dict[str, Value]:
-        """All parameters by name as they are now, calculated ones included."""
-        names = self.variables.names("parameter", "calculatedParameter")
-        return dict(zip(names, self.get(names)))
+        """Values of Fmu.parameter_names as they are now."""
+        return dict(zip(self._parameter_names, self.get(self._parameter_names)))
 
     def get_slopes(self, names: Sequence[str]) -> list[float]:
         """First time derivatives of Real outputs by name, at the last communication point."""

@@ -67,6 +67,9 @@ class LineExtent:
 
     @classmethod
     def of(cls, catenary: Fmu, line: Mapping[str, Value]) -> LineExtent:
+        """By the catenary's table, else by its parameters."""
+        if catenary.line:
+            return cls(catenary.line.boundaries)
         spans, span = (parameter_value(catenary, line, f"line.{name}") for name in ("spans", "span"))
         return cls.alike(int(spans), span)
 

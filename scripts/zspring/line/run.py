@@ -210,7 +210,6 @@ def _settings(system: System, journey: FittedJourney, wire: Instance, heads: Seq
     named += [(f"pantograph {i + 1}", system.pantograph, head) for i, head in enumerate(heads)]
     for prefix, fmu, instance in named:
         settings |= {f"{prefix} {key}": value for key, value in fmu.identity.items()}
-        names = fmu.variables.names("parameter", "calculatedParameter")
-        for name, value in zip(names, instance.get(names)):
+        for name, value in instance.used_parameters().items():
             settings[f"{prefix} {name}"] = with_unit(fmu.variables[name], value)
     return settings
