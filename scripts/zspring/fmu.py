@@ -64,7 +64,7 @@ class Fmu:
             raise ZSpringError(f"{self.path} is no FMU: {error}") from None
         if self.description.fmiVersion != "2.0" or self.description.coSimulation is None:
             raise ZSpringError(f"{self.path} is no FMU for FMI 2.0 co-simulation")
-        self.variables = Variables(self.description)
+        self.variables = Variables(self.description.modelVariables)
         # Windows keeps a library locked for a moment after it was unloaded.
         self._temporary = tempfile.TemporaryDirectory(prefix="zspring-", dir=unpack_in, ignore_cleanup_errors=True)
         self.folder = Path(self._temporary.name)

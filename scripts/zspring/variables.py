@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from fmpy.model_description import ModelDescription, ScalarVariable
+from fmpy.model_description import ScalarVariable
 
 from .errors import ZSpringError, did_you_mean
 
@@ -12,10 +12,10 @@ Value = float | int | bool
 
 
 class Variables:
-    """All variables of one model description, by name, in the order of the description."""
+    """Variables by name, in their order: those of a model description, for one."""
 
-    def __init__(self, description: ModelDescription):
-        self._by_name = {variable.name: variable for variable in description.modelVariables}
+    def __init__(self, variables: Iterable[ScalarVariable]):
+        self._by_name = {variable.name: variable for variable in variables}
 
     def __iter__(self) -> Iterator[ScalarVariable]:
         return iter(self._by_name.values())

@@ -14,7 +14,8 @@ from zspring.errors import ZSpringError
 from zspring.fmu import Fmu
 from zspring.study.design import make_cases
 from zspring.study.evaluations import FrfQuantity, StaticQuantity, column
-from zspring.study.files import StudyRecord
+from zspring.study.file import Range
+from zspring.study.files import StudyRecord, write_parquet
 from zspring.study.plot import envelope_figure
 from zspring.study.report import (
     PERCENTILES,
@@ -26,10 +27,9 @@ from zspring.study.report import (
     sobol_indices,
     sobol_table,
     spread_table,
-    write_parquet,
     write_sobol,
 )
-from zspring.study.settings import Range, StudySettings
+from zspring.study.settings import StudySettings
 
 RANGE = Range.model_validate({"from": 1, "to": 2})
 TWO = StudySettings("sobol", 8, 1, {"m1": RANGE, "m2": RANGE}, {}, (StaticQuantity((0.01,)),))
@@ -208,8 +208,9 @@ def test_lost_cases_are_run_again_and_failed_ones_are_not(tmp_path):
     assert record.missing == [2, 3, 4]
     assert record.failed == [(0, "failed: so and so"), (3, "lost")]
     with path.open("a") as file:
-        file.write("2,ok,0.5,2")
+        file.write("2,ok,2")
     again = opened()
+    assert "seconds" not in again.columns
     assert again.missing == [2, 3, 4] and again.rows[1]["y"] == "2.5" and again.rows[0]["y"] == ""
     again.finish()
     assert [row["case"] for row in table(path)] == ["0", "1", "3"]

@@ -10,7 +10,6 @@ import sys
 
 import pytest
 
-from commands import QUICK, table, zspring
 from paths import TESTS
 from zspring.fmu import CATENARY, PANTOGRAPH
 
@@ -40,15 +39,3 @@ def test_every_process_computes_the_same_bits(model):
     digests = {subprocess.run(command, check=True, capture_output=True, text=True).stdout for _ in range(2)}
     assert len(digests) == 1
     assert len(digests.pop().strip()) == 64
-
-
-def test_a_study_gives_the_same_rows_with_any_number_of_workers(tmp_path):
-    (tmp_path / "quick.toml").write_text(QUICK)
-    rows = []
-    for workers in "1", "3":
-        zspring(tmp_path, "study", "quick.toml", "--output", f"by{workers}", "--workers", workers)
-        rows.append(table(tmp_path / f"by{workers}/study.csv"))
-        for row in rows[-1]:
-            del row["seconds"]
-    assert len(rows[0]) == 8
-    assert rows[0] == rows[1]

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from zspring.couple.report import evaluated, sections, summary
+from zspring.couple.report import summary
 from zspring.en50318.edition import packaged_edition, read_edition
 from zspring.en50318.own_pantograph import OwnPantograph
 from zspring.en50318.plan import (
@@ -23,6 +23,7 @@ from zspring.en50318.plan import (
 )
 from zspring.errors import ZSpringError
 from zspring.fmu import CATENARY, Fmu, installed_fmu
+from zspring.line.evaluated import evaluated, sections
 from zspring.line.journey import LineExtent
 from zspring.line.result import LineResult
 from zspring.line.statistics import Section

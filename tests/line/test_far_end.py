@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from zspring.couple.report import evaluated, sections, summary
+from zspring.couple.report import summary
 from zspring.errors import ZSpringError
 from zspring.fmu import CATENARY, Fmu, installed_fmu
+from zspring.line.evaluated import evaluated, sections
 from zspring.line.journey import FittedJourney, Journey, LineExtent
 from zspring.line.limits import FAR_END, near_wave_speed, of_series
 from zspring.line.result import LineResult

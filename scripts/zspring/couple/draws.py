@@ -12,6 +12,7 @@ from ..draws import SHARE, doubts, head_of, quantiles
 from ..errors import tell
 from ..figures import save
 from ..interrupt import Interrupted
+from ..line.evaluated import sections
 from ..line.limits import near_wave_speed
 from ..line.run import LineRun, run_line
 from ..line.statistics import FIGURES, Section, Statistics, statistics
@@ -20,7 +21,7 @@ from ..records import Record, fill
 from ..text_tables import aligned
 from ..variables import Value
 from .plot import draws_figure
-from .report import SHOWN, sections
+from .report import SHOWN
 
 Draw = tuple[int, int, Statistics]  # number, 0 for the parameters as given; pantograph, from 1; its figures
 

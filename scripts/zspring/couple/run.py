@@ -12,18 +12,19 @@ from tqdm import tqdm
 from ..errors import ZSpringError, tell
 from ..heads import synthetic_note
 from ..interrupt import Interrupted
+from ..line.evaluated import sections
 from ..line.limits import near_wave_speed, of_series, untold_supports
-from ..line.mean_force import uplifts_for
+from ..line.mean_force import run_aimed
 from ..line.result import LineResult, write_result
 from ..line.run import LineRun, run_line
 from ..line.schemes import Coupling
-from ..line.statistics import low_pass, statistics
+from ..line.statistics import low_pass
 from ..line.system import System
 from ..records import keep_others
 from ..tables import read_rows, replaced, write_table
 from ..variables import Value
 from .compare import STEPS, compare_steps, compared, comparison_table
-from .report import sections, summary
+from .report import summary
 from .ssp import write_ssp
 
 Parameters = Mapping[str, Value]
@@ -41,19 +42,9 @@ class Aim:
 def aimed(system: System, aim: Aim, run: Callable[[System], LineResult] = run_line) -> System:
     """The system with the uplifts that give each pantograph the mean force, found by runs; tells what they gave.
 
-    Raises ZSpringError where none do, or where no whole span is evaluated; and what `run` raises.
+    Errors as those of run_aimed.
     """
-    reached: list[float] = []
-
-    def means(uplifts: tuple[float, ...]) -> list[float]:
-        result = run(replace(system, journey=replace(system.journey, uplift=uplifts)))
-        chosen = sections(result, system.extent, aim.spans)
-        if None in chosen:
-            raise ZSpringError("--mean-force: the run goes through no whole span after the first one")
-        reached[:] = [statistics(result.series(i), section)["mean_force"] for i, section in enumerate(chosen)]
-        return reached
-
-    uplifts = uplifts_for(aim.force, [aim.force - force for force in system.of_each("static_force")], means)
+    uplifts, _, reached = run_aimed(system, aim.force, aim.spans, run)
     one = [f"{mean:.1f} N with an uplift of {uplift:.1f} N" for mean, uplift in zip(reached, uplifts)]
     print(f"mean force {aim.name}: target {aim.force:.1f} N, reached {' and '.join(one)}")
     return replace(system, journey=replace(system.journey, uplift=uplifts))

@@ -10,6 +10,7 @@ from typing import Any
 
 from ..errors import ZSpringError
 from ..fmu import Fmu
+from ..line.evaluated import stop_behind
 from ..line.journey import FittedJourney, LineExtent
 from ..line.mean_force import mean_force
 from ..line.statistics import Section
@@ -24,7 +25,6 @@ HEAD_LINE = "benchmark-2015"
 HEAD_SPANS = 4  # evaluated, the last before the far end is felt
 FIRST_HEAD_SPAN = 3  # of these at least: after a span of start-up from any place in the first
 STARTS = 8  # of the heads, even over the first span
-RUN_OUT = 0.4  # s beyond the evaluated spans, for the filter
 
 Parameters = Mapping[str, Value]
 
@@ -131,7 +131,7 @@ def sensitivity_runs(references: Sequence[Run], catenary: Fmu) -> list[Run]:
             if choice.spans:
                 first, last = choice.spans
                 changed = replace(changed, section=extent.section(first, last))
-            runs.append(replace(changed, stop=_stop(changed.section, changed.speed, extent)))
+            runs.append(replace(changed, stop=stop_behind(changed.section, extent, changed.speed / 3.6)))
     return runs
 
 
@@ -147,7 +147,7 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
     runs = []
     for speed in speeds:
         section = _head_section(speed, extent, fastest(catenary, line))
-        stop = _stop(section, speed, extent)
+        stop = stop_behind(section, extent, speed / 3.6)
         for head in HEADS:
             parameters = _pantograph(head.pantograph, pantograph)
             parameters |= {key: parse(pantograph.variables[key], text) for key, text in head.given.items()}
@@ -160,11 +160,6 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
                 series = f"{slug(head.label)}-{speed:g}-km-h.csv" if is_kept else ""
                 runs.append(replace(run, start=i * extent.span_length(1) / STARTS, stop=stop, series=series))
     return runs
-
-
-def _stop(section: Section, speed: float, extent: LineExtent) -> float:
-    """Where a run at `speed` km/h may stop, m: its filter has run out."""
-    return min(section.bounds[1] + RUN_OUT * speed / 3.6, extent.length)
 
 
 def _head_section(speed: float, extent: LineExtent, wave: float) -> Section:

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from functools import cached_property
-
-from tqdm import tqdm
 
 from ..errors import ZSpringError
 from ..fmu import Instance
@@ -87,7 +84,7 @@ class LineRun:
         self._record = Recorder(self.steps + 1, wire_calls, head_calls, supports, datum)
         self._record.take(0, self._shifts(0.0))
 
-    @cached_property
+    @property
     def head_starts(self) -> list[tuple[dict[str, Value], dict[str, float]]]:
         """Parameters and first inputs of each pantograph."""
         direct, acts_on = self.journey.start_up == "direct", f"uplift.{self.journey.uplift_on}"
@@ -97,7 +94,7 @@ class LineRun:
             for parameters, force, uplift in zip(self.system.pantographs, self._static_forces, self.journey.uplift)
         ]
 
-    @cached_property
+    @property
     def wire_start(self) -> tuple[dict[str, Value], dict[str, float]]:
         """Parameters and first inputs of the catenary."""
         unread = {"solver.energies"} & set(self.system.catenary.variables.names("parameter"))  # older FMUs lack it
@@ -138,8 +135,7 @@ class LineRun:
     def finish(self, progress: bool = False) -> None:
         """Run to the stop. Raises Interrupted after Ctrl-C."""
         size, begin = self.journey.step, time.process_time()
-        with stop_on_interrupt() as stop:
-            bar = tqdm(total=self.steps, unit=" steps", disable=None if progress else True)
+        with stop_on_interrupt() as stop, _bar(self.steps, progress) as tell:
             try:
                 for i in range(self._done, self.steps):
                     end = (i + 1) * size
@@ -148,12 +144,11 @@ class LineRun:
                     self._record.take(i + 1, shifts)
                     self._done = i + 1
                     if i % LOOK_EVERY == 0:
-                        bar.update(i + 1 - bar.n)
+                        tell(i + 1)
                         if stop.is_set():
                             raise Interrupted(f"interrupted at {end:g} s")
-                bar.update(self.steps - bar.n)
+                tell(self.steps)
             finally:
-                bar.close()
                 self._elapsed += time.process_time() - begin
 
     @property
@@ -183,6 +178,18 @@ class LineRun:
 
     def __exit__(self, *_) -> None:
         self._stack.close()
+
+
+@contextmanager
+def _bar(steps: int, is_shown: bool) -> Iterator[Callable[[int], object]]:
+    """A progress bar, as a function of the steps done."""
+    if not is_shown:
+        yield lambda done: None
+        return
+    from tqdm import tqdm  # which workers of a study need not have
+
+    with tqdm(total=steps, unit=" steps", disable=None) as bar:
+        yield lambda done: bar.update(done - bar.n)
 
 
 def _settings(system: System, journey: FittedJourney, wire: Instance, heads: Sequence[Instance]) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import pickle
 import queue
 import sys
@@ -9,8 +10,9 @@ import threading
 import time
 import uuid
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from functools import lru_cache
 
 import cloudpickle
 from distributed import CancelledError, Client, Future, KilledWorker, TimeoutError, get_worker
@@ -21,7 +23,7 @@ import zspring
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from .design import Case
-from .settings import StudySettings
+from .evaluations import Quantity
 from .workers import FAILED, Result, StudyPlugin
 
 LOST = "lost"  # status of a case that took its worker with it, time and again
@@ -46,14 +48,15 @@ class Cluster:
         return sum(self.client.nthreads().values())
 
     @contextmanager
-    def study(self, fmu: Fmu, settings: StudySettings) -> Iterator[str]:
-        """FMU and code on all workers, for as long as the study runs; the name to call it by.
+    def study(self, fmu: Fmu, catenary: Fmu | None, quantities: Sequence[Quantity]) -> Iterator[str]:
+        """FMUs and code on all workers, for as long as the study runs; the name to call it by.
 
         Raises ZSpringError if a worker cannot run it.
         """
         self._check_python()
         name = f"zspring-{uuid.uuid4().hex}"
-        plugin = StudyPlugin(name, fmu.path.read_bytes(), settings.common, settings.quantities)
+        line = catenary.path.read_bytes() if catenary else None
+        plugin = StudyPlugin(name, fmu.path.read_bytes(), line, quantities)
         try:
             try:
                 self.client.register_plugin(_ByValue(plugin), name=name)
@@ -61,7 +64,8 @@ class Cluster:
                 raise ZSpringError(f"the workers cannot run the study: {type(error).__name__}: {error}") from None
             yield name
         finally:
-            with suppress(OSError):  # a scheduler that is gone, and its workers, have forgotten it, too
+            # A scheduler that is gone, and its workers, have forgotten it, too; or it never came there.
+            with suppress(OSError, ValueError):
                 self.client.unregister_worker_plugin(name)
 
     def run(self, study: str, cases: Mapping[int, Case], stop: threading.Event) -> Iterator[tuple[int, Result]]:
@@ -149,6 +153,12 @@ class Cluster:
             there = ".".join(worker["host"]["python"].split(".")[:2])
             if there != here:
                 raise ZSpringError(f"worker {address} runs Python {there}: needs {here}, as here")
+
+
+# What code that travels by value may hold, and cloudpickle does not know: the lock of a cached_property (before
+# Python 3.12), and functions with a cache, which it takes for those of an installed package.
+copyreg.pickle(type(threading.RLock()), lambda lock: (threading.RLock, ()))
+copyreg.pickle(type(lru_cache(len)), lambda function: (lru_cache, (function.__wrapped__,)))
 
 
 class _ByValue(WorkerPlugin):

@@ -9,7 +9,8 @@ from pathlib import Path
 import click
 
 from ..errors import missing_extra
-from ..options import POSITIVE, fmu_option, format_option, opened, option, output_option
+from ..fmu import CATENARY, installed_fmu
+from ..options import POSITIVE, fmu_option, format_option, line_fmu_option, opened, option, output_option
 from ..records import claimed
 
 NEEDED = ("distributed", "SALib", "pyarrow")
@@ -23,7 +24,8 @@ NEEDED = ("distributed", "SALib", "pyarrow")
     kind=str,
     metavar="ADDRESS",
     help="Run on the Dask cluster with this scheduler, e.g. tcp://host:8786, instead of local processes. Its "
-    "workers need distributed, fmpy, numpy and the Python version from here; FMU and code are sent to them.",
+    "workers need distributed, fmpy, numpy (scipy for [couple]) and the Python version from here; FMUs and code are "
+    "sent to them.",
 )
 @option(
     "--workers",
@@ -38,10 +40,13 @@ NEEDED = ("distributed", "SALib", "pyarrow")
     kind=POSITIVE,
     help="Longest wait in s for the scheduler, and for a worker when there is none.",
 )
-@click.option("--parquet", is_flag=True, help="Write the results as study.parquet, too, at the end.")
+@click.option(
+    "--parquet", is_flag=True, help="Write the results as study.parquet, too, from time to time and at the end."
+)
 @format_option
 @fmu_option
-def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path) -> None:
+@line_fmu_option
+def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path, line_fmu) -> None:
     """Run the parameter study that the TOML file FILE describes.
 
     \b
@@ -58,8 +63,18 @@ def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path) 
         amplitudes = [1, 4]        # m/s2
         frequencies = "3:9:0.25"   # Hz
         resonance_band = [3, 9]    # Hz, where the highest resonance is looked for
-        [static]                   # ... and/or the static stiffness of the suspension
+        [static]                   # ... and/or the static stiffness of the suspension ...
         amplitudes = [0.02]        # m
+        [couple]                   # ... and/or a run along a line (options of `zspring couple`)
+        line = "en-50318-2002"     # a set or an SSV file
+        speed = 250                # km/h
+        spans = [4, 6]             # to evaluate
+        [compare]                  # each run by all of these, with [couple] alone
+        "Z-spring" = {}
+        "rods held" = { suspension = "LinearLocked" }
+
+    With [couple] the line's parameters vary as catenary.NAME, what the run is given as couple.speed, couple.spacing
+    and so on.
 
     A grid takes values ([1, 2, 3] or a range with its count) and makes all combinations; a list takes the
     first value of each parameter, then the second of each, and so on.
@@ -70,8 +85,8 @@ def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path) 
     absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if absent:
         raise missing_extra(absent, "study")
-    from .run import run_study
+    from .run import Place, run_study
 
     folder = output or Path("results") / f"study-{file.stem}"
-    with opened(fmu_path) as fmu, claimed(folder):
-        run_study(fmu, file, folder, scheduler, workers, timeout, suffix, parquet)
+    with opened(fmu_path) as fmu, opened(line_fmu or installed_fmu(CATENARY)) as catenary, claimed(folder):
+        run_study(fmu, catenary, file, folder, Place(scheduler, workers, timeout), suffix, parquet)

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..errors import ZSpringError
 from ..variables import Value
-from .settings import MOST_CASES, Range, StudySettings
+from .file import MOST_CASES, Range
+from .settings import COMPARED, StudySettings
 
 Case = dict[str, Value]  # values of the parameters that vary
 
@@ -22,8 +23,14 @@ def make_cases(settings: StudySettings) -> list[Case]:
     latin-hypercube     McKay, Beckman, Conover 1979, as scipy.stats.qmc has it
     sobol               Saltelli et al. 2010 on a scrambled Sobol sequence, as SALib has it: blocks of D + 2
                         cases, from which first and total order indices follow
-    Raises ZSpringError if there are more than MOST_CASES.
+    Each of them for all that are compared. Raises ZSpringError if there are more than MOST_CASES.
     """
+    compared = [{COMPARED: i + 1} for i in range(len(settings.compared))] or [{}]
+    cases = _designed(settings, len(compared))
+    return [{**case, **which} for case in cases for which in compared]
+
+
+def _designed(settings: StudySettings, copies: int) -> list[Case]:
     names, dimension = list(settings.vary), len(settings.vary)
     varied = [given for given in settings.vary.values() if isinstance(given, tuple)]
     spans = [given for given in settings.vary.values() if isinstance(given, Range)]
@@ -33,8 +40,8 @@ def make_cases(settings: StudySettings) -> list[Case]:
         "latin-hypercube": lambda: settings.samples,
         "sobol": lambda: settings.samples * (dimension + 2),
     }[settings.design]()
-    if count > MOST_CASES:
-        raise ZSpringError(f"{count} cases: a study has at most {MOST_CASES}")
+    if count * copies > MOST_CASES:
+        raise ZSpringError(f"{count * copies} cases: a study has at most {MOST_CASES}")
     if settings.design in ("grid", "list"):
         rows = itertools.product(*varied) if settings.design == "grid" else zip(*varied)
         return [dict(zip(names, row)) for row in rows]

@@ -1,4 +1,4 @@
-"""What a study computes for one case. This runs on the workers, so it needs only fmpy and numpy."""
+"""What a study computes of the pantograph on a bench. This runs on the workers, so it needs only fmpy and numpy."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ..bench.points import FAILED, NOT_SETTLED, REPEATS, FrfSettings, Kept, swee
 from ..bench.refine import Refinement, refine
 from ..fmu import Instance
 from ..variables import Value, exact, exact_list, parse, text
+from .coupled import CoupledQuantity
 
 NOT_SETTLED_COLUMN = "not settled"
 
@@ -121,7 +122,7 @@ class StaticQuantity:
         return dict(zip(self.scalars, values)), []
 
 
-Quantity = FrfQuantity | StaticQuantity
+Quantity = FrfQuantity | StaticQuantity | CoupledQuantity
 
 
 def column(part: str, amplitude: float, frequency: float) -> str:

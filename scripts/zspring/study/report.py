@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,16 +12,15 @@ import numpy as np
 
 from ..tables import write_table
 from ..text_tables import aligned
+from .coupled import REMARKS
 from .design import unit_problem
 from .evaluations import FrfQuantity, column
-from .files import STATUS
+from .files import STATUS, Rows, values
 from .settings import StudySettings
 from .workers import OK
 
 PERCENTILES = (0, 5, 50, 95, 100)
 NEGLIGIBLE = 0.05  # of a Sobol index
-
-Rows = Mapping[int, Mapping[str, str]]
 
 
 @dataclass(frozen=True)
@@ -41,11 +41,6 @@ class SobolIndices:
     first_confidence: np.ndarray
     total: np.ndarray
     total_confidence: np.ndarray
-
-
-def values(rows: Rows, name: str) -> np.ndarray:
-    """A column as numbers, in the order of the cases; NaN where it is empty. Shape (rows,)."""
-    return np.array([float(rows[number][name] or "nan") for number in sorted(rows)])
 
 
 def envelopes(quantity: FrfQuantity, rows: Rows) -> list[Envelope]:
@@ -132,19 +127,7 @@ def write_sobol(path: Path, head: Mapping[str, str], settings: StudySettings, fo
     write_table(path, {**head, "confidence": "half width of the 95 % interval"}, columns, rows, digits=6)
 
 
-def write_parquet(
-    path: Path, head: Mapping[str, str], columns: Sequence[str], rows: Rows, texts: Sequence[str]
-) -> None:
-    """All rows as Parquet, the head as the schema's metadata; columns in `texts` stay text."""
-    import pyarrow
-    import pyarrow.parquet
-
-    ordered = [rows[number] for number in sorted(rows)]
-    arrays = {
-        name: [row[name] for row in ordered]
-        if name in texts
-        else pyarrow.array(values(rows, name), from_pandas=True)  # NaN is a missing value
-        for name in columns
-    }
-    table = pyarrow.table(arrays).replace_schema_metadata(dict(head))
-    pyarrow.parquet.write_table(table, path)
+def remarks(rows: Rows) -> list[str]:
+    """Lines with what results must not be read without, and of how many cases."""
+    found = Counter(row[REMARKS] for row in rows.values() if row.get(REMARKS))
+    return [f"{count} cases: {remark}" if count > 1 else f"1 case: {remark}" for remark, count in found.items()]

@@ -1,7 +1,7 @@
-"""What runs on a Dask worker: the FMU, unpacked once, and cases on it.
+"""What runs on a Dask worker: the FMUs, unpacked once, and cases on them.
 
-FMU and code travel to the workers with the study, so that a worker needs only distributed, fmpy and numpy,
-and the same Python version (major, minor): cloudpickle ships the package's functions and classes by value.
+FMUs and code travel to the workers with the study, so that a worker needs only distributed, fmpy and numpy, for
+[couple] scipy, and the same Python version (major, minor): cloudpickle ships the package's code by value.
 """
 
 from __future__ import annotations
@@ -20,37 +20,63 @@ from distributed.diagnostics.plugin import WorkerPlugin
 from ..errors import ZSpringError
 from ..fmu import Fmu, Instance
 from ..variables import Value
+from .coupled import COUPLE, LINE, CoupledQuantity
 from .evaluations import Quantity
 
 OK, FAILED = "ok", "failed"
 
-Result = dict[str, Any]  # "status", "seconds", and values by column
+Result = dict[str, Any]  # "status", "seconds" and "CPU", and values by column
+
+
+class KeptFmu(Fmu):
+    """An FMU whose instances serve one case after the other, each in one thread at a time, and are freed with it."""
+
+    def __init__(self, content: bytes, folder: Path):
+        path = folder / f"{hashlib.sha256(content).hexdigest()}.fmu"
+        path.write_bytes(content)
+        super().__init__(path, unpack_in=folder)
+        self._stack, self._lock = ExitStack(), threading.Lock()
+        self._free: list[Instance] = []
+
+    @contextmanager
+    def instances(self, count: int = 1) -> Iterator[list[Instance]]:
+        with self._lock:
+            missing = max(0, count - len(self._free))
+            self._free += self._stack.enter_context(super().instances(missing))
+            taken = [self._free.pop() for _ in range(count)]
+        try:
+            yield taken
+        finally:
+            with self._lock:
+                self._free += taken
+
+    def close(self) -> None:
+        self._stack.close()
+        super().close()
 
 
 class StudyPlugin(WorkerPlugin):
     """One study on a worker; the scheduler gives it to each worker, those that come later included.
 
-    content     the .fmu file
-    common      parameters that all cases have in common
-    quantities  what to compute
-    Setting up raises ZSpringError if the FMU cannot run there.
+    pantograph, catenary    contents of the .fmu files; None: a study without a line
+    quantities              what to compute
+    Setting up raises ZSpringError if an FMU cannot run there.
     """
 
-    def __init__(self, name: str, content: bytes, common: Mapping[str, Value], quantities: Sequence[Quantity]):
+    def __init__(self, name: str, pantograph: bytes, catenary: bytes | None, quantities: Sequence[Quantity]):
         self.name = name
-        self._content, self._common, self._quantities = content, dict(common), tuple(quantities)
+        self._contents = [content for content in (pantograph, catenary) if content is not None]
+        self._quantities = tuple(quantities)
 
     def setup(self, worker: Worker) -> None:
         folder = Path(worker.local_directory)
-        path = folder / f"{hashlib.sha256(self._content).hexdigest()}.fmu"
-        path.write_bytes(self._content)
         self._stack = ExitStack()
-        self._fmu = self._stack.enter_context(Fmu(path, unpack_in=folder))
-        self._free: list[Instance] = []
+        self._fmus = [self._stack.enter_context(KeptFmu(content, folder)) for content in self._contents]
         self._lock = threading.Lock()
         self._running, self._is_over = 0, False
-        with self._instance():
-            pass  # loads the library, so that a wrong platform shows here
+        for fmu in self._fmus:
+            with fmu.instances():
+                pass  # loads the library, so that a wrong platform shows here
 
     def teardown(self, worker: Worker) -> None:
         """Free all, now or, as a cancelled case runs on to its end, after that."""
@@ -59,15 +85,15 @@ class StudyPlugin(WorkerPlugin):
             if not self._running:
                 self._stack.close()
 
-    def run(self, case: Mapping[str, Value]) -> Result:
+    def run(self, parameters: Mapping[str, Value]) -> Result:
         """One case: a refusal or a step that cannot be solved is a result, too."""
-        begin = time.perf_counter()
-        values: dict[str, float] = {}
+        begin, begin_cpu = time.perf_counter(), time.thread_time()
+        values: Result = {}
         problems: list[str] = []
-        with self._instance() as instance:
+        with self._busy():
             for quantity in self._quantities:
                 try:
-                    found, unsolved = quantity.measure(instance, {**self._common, **case})
+                    found, unsolved = self._measured(quantity, parameters)
                 except ZSpringError as error:
                     problems.append(str(error))
                 else:
@@ -75,19 +101,27 @@ class StudyPlugin(WorkerPlugin):
                     problems += unsolved
         # The same refusal may have met several quantities.
         status = f"{FAILED}: {'; '.join(dict.fromkeys(problems))}" if problems else OK
-        return {"status": status, "seconds": round(time.perf_counter() - begin, 4), **values}
+        times = {"seconds": time.perf_counter() - begin, "CPU": time.thread_time() - begin_cpu}
+        return {"status": status, **times, **values}
+
+    def _measured(self, quantity: Quantity, parameters: Mapping[str, Value]) -> tuple[Result, list[str]]:
+        """Values of one quantity by column, and what could not be solved."""
+        if isinstance(quantity, CoupledQuantity):
+            pantograph, catenary = self._fmus
+            return quantity.measure(pantograph, catenary, parameters)
+        own = {name: value for name, value in parameters.items() if not name.startswith((LINE, COUPLE))}
+        with self._fmus[0].instances() as (instance,):
+            return quantity.measure(instance, own)
 
     @contextmanager
-    def _instance(self) -> Iterator[Instance]:
-        """An instance for one thread at a time."""
+    def _busy(self) -> Iterator[None]:
+        """The FMUs stay open for this case."""
         with self._lock:
-            instance = self._free.pop() if self._free else self._stack.enter_context(self._fmu.instances())[0]
             self._running += 1
         try:
-            yield instance
+            yield
         finally:
             with self._lock:
-                self._free.append(instance)
                 self._running -= 1
                 if self._is_over and not self._running:
                     self._stack.close()
