@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from zspring.errors import ZSpringError
+from zspring.line.quantities import band_figure, described, is_figure, point_figure, points_of
 from zspring.line.series import Series
 from zspring.line.statistics import Section, low_pass, statistics
 
@@ -34,12 +35,43 @@ def test_a_sine_comes_through_with_the_gain_of_its_frequency(frequency):
     whole, low = gain(frequency, 20), gain(frequency, 5)
     assert found["mean_force"] == pytest.approx(120, abs=1e-3)
     assert found["standard_deviation"] == pytest.approx(deviation * whole, rel=1e-3)
+    assert found["standard_deviation_0_2"] == pytest.approx(deviation * gain(frequency, 2), rel=2e-3, abs=0.02)
     assert found["standard_deviation_0_5"] == pytest.approx(deviation * low, rel=1e-3, abs=0.01)
     assert found["standard_deviation_5_20"] == pytest.approx(deviation * (whole - low), rel=1e-3, abs=0.02)
     assert found["statistical_maximum"] == pytest.approx(120 + 3 * deviation * whole, rel=1e-3)
     assert found["statistical_minimum"] == pytest.approx(120 - 3 * deviation * whole, rel=2e-3)
     assert found["actual_maximum"] == pytest.approx(120 + 30 * whole, rel=2e-3)
     assert found["actual_minimum"] == pytest.approx(120 - 30 * whole, rel=2e-3)
+
+
+@pytest.mark.parametrize("band, frequency", [((0, 50), 35), ((20, 50), 22), ((20.5, 50), 60), ((50, 200), 90)])
+def test_any_other_band_is_the_difference_of_two_filters(band, frequency):
+    found = statistics(
+        series(lambda t: 120 + 30 * np.sin(2 * np.pi * frequency * t)), MIDDLE, further=[band_figure(*band)]
+    )
+    low, high = (gain(frequency, cutoff) if cutoff else 0.0 for cutoff in band)
+    assert list(found)[-1] == band_figure(*band) and is_figure(band_figure(*band))
+    assert found[band_figure(*band)] == pytest.approx(30 / np.sqrt(2) * (high - low), rel=2e-3)
+
+
+def test_bands_that_a_series_is_too_short_for_are_not_told_or_refused():
+    """Five periods: of 2 Hz 2.5 s; a series of 2 s has those of 5 Hz."""
+    short = series(lambda t: 100 + t, duration=2.0)
+    found = statistics(short)
+    assert np.isnan(found["standard_deviation_0_2"]) and not np.isnan(found["standard_deviation_0_5"])
+    with pytest.raises(ZSpringError, match=r"too short for 1\.5 Hz: at least 3\.33333 s"):
+        statistics(short, further=["standard_deviation_1.5_20"])
+    with pytest.raises(ZSpringError, match=r"sample step 0\.001 s: must be below 0\.0008 s for 500 Hz"):
+        statistics(short, further=["standard_deviation_20_500"])
+
+
+@pytest.mark.parametrize(
+    "name", ["standard_deviation_5_2", "standard_deviation_5", "uplift_at_", "uplift_at_-3", "mean"]
+)
+def test_other_names_are_no_figures(name):
+    assert not is_figure(name)
+    with pytest.raises(KeyError):
+        described(name)
 
 
 def test_the_filter_does_not_shift_the_phase():
@@ -134,6 +166,22 @@ def test_uplift_is_that_of_supports_in_the_section_and_its_ends():
     nowhere = Series("test", time, np.full(10001, 100.0), SPEED * time, None, uplift)
     assert statistics(nowhere, MIDDLE)["support_uplift"] == pytest.approx(90)
     assert np.isnan(statistics(nowhere, MIDDLE)["contact_point_range"])
+
+
+def test_uplift_at_mid_span_and_at_points_is_that_of_the_wire_there():
+    """Spans of 70 m from 140 m on, middles at 175, 245 ... m: 176.3 m is one of them, 176.5 m is not any more."""
+    time = np.arange(10001) / 1000
+    at = {100.0: 0.2, 176.3: 0.05, 176.5: 0.07, 245.0: 0.04, 300.0: 0.3}
+    lifted = {x: peak * np.exp(-((SPEED * time - x) ** 2) / 50) for x, peak in at.items()}
+    known = Series("test", time, np.full(10001, 100.0), SPEED * time, points=lifted)
+    names = [point_figure(x) for x in (100.0, 300.0, 299.0)]
+    assert points_of(names) == (100.0, 300.0, 299.0)
+    found = statistics(known, MIDDLE, further=names)
+    assert found["midspan_uplift"] == pytest.approx(50, abs=0.01)
+    assert [found[name] for name in names] == pytest.approx([200, 300, np.nan], abs=0.01, nan_ok=True)
+    moved = statistics(known.moved(10.0), Section.alike(3, 8, 70.0, 10.0), further=["uplift_at_310"])
+    assert (moved["midspan_uplift"], moved["uplift_at_310"]) == pytest.approx((50, 300), abs=0.01)
+    assert np.isnan(statistics(known)["midspan_uplift"])  # no section, no spans
 
 
 def test_spans_outside_the_line_are_refused():

@@ -15,7 +15,7 @@ import scipy
 from ..fmu import Fmu
 from ..line.mean_force import TOLERANCE
 from ..line.series import BAND, LEAST_RATE
-from ..line.statistics import ORDER, PARTS
+from ..line.statistics import ORDER
 from ..page import WORDS, Cell, Chapter, Table
 
 TITLE = "What this report shows, and what not"
@@ -62,14 +62,15 @@ def method() -> Chapter:
         [
             f"Filter: a Butterworth low-pass of order {ORDER} at {BAND:g} Hz, run forwards and backwards over the "
             "whole series before spans are cut out: no phase shift; gain 0.5 (-6 dB) at the band's edge, 0.71 at "
-            f"0.90 and 0.97 at 0.65 of it. The part of 0 to {PARTS:g} Hz is taken alike; that of {PARTS:g} to "
-            f"{BAND:g} Hz is the difference of both. Series need even samples, at least {LEAST_RATE:g} a second.",
+            "0.90 and 0.97 at 0.65 of it. All other bands are taken alike; one that does not begin at 0 Hz is the "
+            f"difference of two. Series need even samples, at least {LEAST_RATE:g} a second.",
             "Statistical maximum and minimum are mean ± 3 standard deviations; actual maximum and minimum are of "
             "the filtered force. Loss of contact is the share of time in which the unfiltered force is not "
             "positive. Uplift is the largest of the supports at and between the ends of the evaluated spans, at "
-            "any time of the run. The range of the contact point is that of the wire's height at the pantograph, "
-            "unfiltered. The limit of standard deviation over mean force, and the target mean force of AC lines, "
-            "0.00097 v² + 70 N with v in km/h, are as papers quote them.",
+            "any time of the run, whichever pantograph lifts them; at mid-span it is the largest of the points there. "
+            "The range of the contact point is that of the wire's height at the pantograph, unfiltered. The limit of "
+            "standard deviation over mean force, and the target mean force of AC lines, 0.00097 v² + 70 N with v in "
+            "km/h, are as papers quote them.",
             "Our runs start at rest and pass over the first span from the wire's unloaded height to the wire (a "
             "half cosine), so that the static force holds at the unloaded height and the pantograph's own springs "
             "take their share when the wire lifts. Where a mean force by speed is asked for, the uplift on the upper "

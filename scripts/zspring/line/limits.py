@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from ..fmu import Fmu
 from ..variables import Value
 from .journey import LineExtent
-from .series import Series
+from .quantities import band_of, described
+from .series import BAND, Series
 from .statistics import Section
 from .waves import wave_speed
 
@@ -40,6 +41,17 @@ def untold_supports(catenary: Fmu, extent: LineExtent) -> list[str]:
     return [
         f"warning: a line of {extent.spans} spans: uplifts are told at its first {told} supports alone, those up to "
         f"{extent.supports[told - 1]:.4g} m; no other one is among the figures"
+    ]
+
+
+def of_bands(names: Iterable[str]) -> list[str]:
+    """A line for each figure, by name, that is of frequencies for which the model is not made."""
+    bands = {name: band for name in names if (band := band_of(name))}
+    return [
+        f"warning: {described(name)[0]}: above {BAND:g} Hz a simulated force is one of lumped masses on contact.k, "
+        "which no data here tell"
+        for name, (_, high) in bands.items()
+        if high > BAND
     ]
 
 

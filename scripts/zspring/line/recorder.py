@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -20,12 +20,18 @@ class Recorder:
         heads: Sequence[PreparedCalls],
         supports: np.ndarray,
         datum: Sequence[float],
+        points: Mapping[int, float],
     ):
-        """datum    m, what the catenary's heights under the pantographs are measured from"""
+        """Where to keep what.
+
+        datum       m, what the catenary's heights under the pantographs are measured from
+        points      positions in m of the watched points by their numbers in the FMU
+        """
         count = len(heads)
         names = [f"pantograph[{i + 1}].{name}" for name in ("x", "wire_height") for i in range(count)]
         names += [f"support.uplift[{i + 2}]" for i in range(len(supports))]  # the first is the anchor
-        self._supports, self._datum = supports, np.array(datum)
+        names += [f"point.uplift[{number}]" for number in points]
+        self._supports, self._points, self._datum = supports, points, np.array(datum)
         self._wire, self._slack = wire.reals(names), wire.integers(["droppers.slack"])
         self._heads = [
             head.reals(["contact.force", "head.z", "zspring.moment_alpha", "zspring.moment_beta"]) for head in heads
@@ -46,7 +52,8 @@ class Recorder:
     def result(self, rows: slice, step: float, settings: dict[str, str], elapsed: float) -> LineResult:
         """The result of the rows taken."""
         wire, slack, heads = self._wire_rows[rows], self._slack_rows[rows], self._head_rows[rows]
-        count = heads.shape[1]
+        count, supports = heads.shape[1], len(self._supports)
+        at_points = wire[:, 2 * count + supports :]
         return LineResult(
             time=step * np.arange(len(slack)),
             position=wire[:, :count],
@@ -54,9 +61,10 @@ class Recorder:
             wire_height=wire[:, count : 2 * count] + self._datum,
             head_height=heads[:, :, 1],
             support_position=self._supports,
-            support_uplift=wire[:, 2 * count :],
+            support_uplift=wire[:, 2 * count : 2 * count + supports],
             slack_droppers=slack,
             moment=heads[:, :, 2:],
             settings=settings,
             elapsed=elapsed,
+            points=dict(zip(self._points.values(), at_points.T)),
         )

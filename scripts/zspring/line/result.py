@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from .stated import UNDISTURBED, Stated
 
 SLIPPING = 0.99  # share of Mf from which a joint counts as slipping; the tanh law creeps below it
 _SUPPORT = re.compile(r"support uplift at (\S+) m")
+_POINT = re.compile(r"uplift at (\S+) m")
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,7 @@ class LineResult:
     moment: np.ndarray  # (n, p, 2) N.m, friction moments of the Z-spring's joints alpha and beta
     settings: dict[str, str]  # all that it takes to repeat the run
     elapsed: float  # s of CPU
+    points: Mapping[float, np.ndarray] = field(default_factory=dict)  # (n,) m, uplift of the wire by position in m
 
     @property
     def friction_bound(self) -> np.ndarray:
@@ -58,6 +60,7 @@ class LineResult:
             uplift=dict(zip(names, self.support_uplift.T)),
             support_position=dict(zip(names, self.support_position.tolist())),
             stated=Stated(undisturbed_until=float(self.undisturbed_until[i])),
+            points=self.points,
         )
 
 
@@ -78,6 +81,8 @@ def _columns(result: LineResult) -> Iterator[tuple[str, np.ndarray]]:
     yield "slack droppers", result.slack_droppers
     for position, uplift in zip(result.support_position, result.support_uplift.T):
         yield f"support uplift at {position:.10g} m [m]", uplift
+    for position, uplift in result.points.items():
+        yield f"uplift at {position:.10g} m [m]", uplift
 
 
 def write_result(result: LineResult, path: Path) -> None:
@@ -102,6 +107,7 @@ def read_result(path: Path) -> LineResult:
             return np.column_stack([table[name.format(i + 1)] for i in range(count)])
 
         uplift = {found[1]: series for name, series in table.items() if (found := _SUPPORT.match(name))}
+        points = {float(found[1]): series for name, series in table.items() if (found := _POINT.match(name))}
         return LineResult(
             time=table["time [s]"],
             position=of_each("position {} [m]"),
@@ -114,6 +120,7 @@ def read_result(path: Path) -> LineResult:
             moment=np.stack([of_each(f"moment {joint} {{}} [N.m]") for joint in ("alpha", "beta")], axis=2),
             settings=head,
             elapsed=elapsed,
+            points=points,
         )
     except (KeyError, ValueError) as error:
         raise ZSpringError(f"{path}: is not as zspring couple writes it: {error} is missing") from None

@@ -81,7 +81,7 @@ class LineRun:
         self._uplifts = [calls.reals([f"uplift.{self.journey.uplift_on}"]) for calls in head_calls]
         self._scheme = self._make_scheme(head_calls)
         supports = self.line.supports[: most_supports(system.catenary)]
-        self._record = Recorder(self.steps + 1, wire_calls, head_calls, supports, datum)
+        self._record = Recorder(self.steps + 1, wire_calls, head_calls, supports, datum, system.watched)
         self._record.take(0, self._shifts(0.0))
 
     @property

@@ -7,6 +7,7 @@ The file is a table as `tables.py` reads it, with the columns, in any order:
     position [m]                of the pantograph along the line, may be missing where there is a time
     wire height [m]             of the contact point; optional
     support uplift ... [mm]     one column for each support; optional
+    uplift at X m [mm]          of the contact wire at any point, X m along the line, one column for each; optional
 
 or other units of these kinds. A number ("contact force 1 [N]") counts as that of the pantograph: the files that
 `zspring couple` and `zspring en50318` write have this form; contact.force, as `zspring simulate` writes it, is the
@@ -20,7 +21,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,7 @@ LEAST_PERIODS = 20  # of 20 Hz in a series, 5 of 5 Hz
 BAND = 20.0  # Hz, upper end of the standard's frequency range
 POSSIBLE = -500.0, 5000.0  # N: a contact only presses, but what is measured has noise; far beyond any peak
 NEAR = 2.0  # m from the usual height, within which a contact point or a lifted support is
+_POINT = re.compile(r"uplift at ([-+]?\d+(?:\.\d+)?) m")
 _NO_VALUE = re.compile(r"[-+]?9{3,}(?:[.,][09]{0,4})?")  # signs for no value: -999, -9999.0, 9999.99
 
 
@@ -51,6 +53,7 @@ class Series:
     uplift: Mapping[str, np.ndarray] | None = None  # (n,) m by name of the support
     support_position: Mapping[str, float] | None = None  # m by name of the support, where known
     stated: Stated = field(default_factory=Stated)
+    points: Mapping[float, np.ndarray] = field(default_factory=dict)  # (n,) m, uplift of the wire by position in m
 
     @property
     def step(self) -> float:
@@ -63,6 +66,15 @@ class Series:
         if self.position is None:
             return None
         return float(3.6 * (self.position[-1] - self.position[0]) / (self.time[-1] - self.time[0]))
+
+    def moved(self, by: float) -> Series:
+        """The series with all positions `by` m further along."""
+        if not by:
+            return self
+        supports = {name: place + by for name, place in (self.support_position or {}).items()}
+        points = {place + by: values for place, values in self.points.items()}
+        position = None if self.position is None else self.position + by
+        return replace(self, position=position, support_position=supports, points=points)
 
     def check(self) -> Series:
         """The series itself. Raises ZSpringError where it is uneven, too short or too slowly sampled."""
@@ -137,14 +149,18 @@ def read_series(path: Path, speed: float | None = None, pantograph: int = 1, tur
     if height is not None:
         usual = float(np.median(height))
         _within(table, "wire height", height, (usual - NEAR, usual + NEAR), "m")
-    uplift = {}
+    uplift, points = {}, {}
     for name in table.columns:
-        if name.startswith("support uplift"):
+        is_point = _POINT.fullmatch(name)
+        if name.startswith("support uplift") or is_point:
             values = _values(table, name, "m")
             _within(table, name, values, (-NEAR, NEAR), "m")
-            uplift[name.removeprefix("support uplift").strip() or "support"] = values
+            if is_point:
+                points[float(is_point[1])] = values
+            else:
+                uplift[name.removeprefix("support uplift").strip() or "support"] = values
     places = {name: float(found[1]) for name in uplift if (found := re.fullmatch(r"at (\S+) m", name))}
-    return Series(str(path), time, force, position, height, uplift, places, stated).check()
+    return Series(str(path), time, force, position, height, uplift, places, stated, points).check()
 
 
 def require_pressing(name: str, mean: float) -> None:
