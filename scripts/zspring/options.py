@@ -21,6 +21,7 @@ from .parameter_sets import ACCURATE_STEP, PANTOGRAPHS, chosen_set
 from .tables import LARGEST
 from .variables import Value
 
+_DECIMAL = r"\d+(?:\.\d+)?"
 MOST_NUMBERS = 100_000
 TOLD_ANYWAY = ("drive", "suspension", "friction", "solver.step")  # by titles
 
@@ -96,6 +97,21 @@ class Spans(click.ParamType):
         if not 1 <= first <= last:
             self.fail(f"{value!r}: must be N or FIRST:LAST, counted from 1", param, ctx)
         return first, last
+
+
+class Band(click.ParamType):
+    """LOW:HIGH, frequencies in Hz from 0."""
+
+    name = "band"
+
+    def convert(self, value, param, ctx) -> tuple[float, float]:
+        if isinstance(value, tuple):
+            return value
+        found = re.fullmatch(rf"({_DECIMAL}):({_DECIMAL})", value.strip())
+        low, high = (float(found[1]), float(found[2])) if found else (0.0, 0.0)
+        if not low < high:
+            self.fail(f"{value!r}: must be LOW:HIGH, frequencies in Hz from 0, as 20:50", param, ctx)
+        return low, high
 
 
 FILE = click.Path(path_type=Path, dir_okay=False)

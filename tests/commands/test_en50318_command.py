@@ -212,6 +212,41 @@ def test_an_own_pantograph_is_counted_apart(quick, tmp_path):
     assert "Own pantograph: dsa-250" in page and "not for this pantograph" in page
 
 
+def test_two_pantographs_have_the_mean_force_of_the_case_and_each_its_figures(tmp_path):
+    """By numpy on the series: means over the span, the spacing, the wire's uplift, and a band by the filter's gain."""
+    line_with(tmp_path, "long.ssv", "line.spans", "6")
+    case = CASE.replace("short.ssv", "long.ssv").format(speed=250)
+    case = case.replace(
+        "first_span = 2\nlast_span = 3\nstatic_force = 100", "first_span = 4\nlast_span = 4\nspacing = 40"
+    )
+    case = case.replace("[case.ranges]", "mean_force = 110\nfigures = ['standard_deviation_20_50']\n[case.ranges]")
+    trailing = "[case.trailing_ranges]\nmean_force = [109, 111]\n'uplift_at_215' = [1, 2]\n"
+    (tmp_path / "edition.toml").write_text(EDITION + case + trailing, encoding="utf-8")
+    out, _ = zspring(tmp_path, "en50318", "--edition", "edition.toml", "--output", "out")
+    (csv,) = (tmp_path / "out").glob("*-250.csv")
+    rows = table(csv)
+    column = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    assert column["position 1 [m]"] - column["position 2 [m]"] == pytest.approx(40)
+    frequency = np.fft.rfftfreq(len(rows), 1e-3)
+    x = np.tan(np.pi * np.minimum(frequency, 499) / 1000)
+    gains = [1 / (1 + (x / np.tan(np.pi * edge / 1000)) ** 8) for edge in (20, 50)]
+    printed = {line[:32].strip(): line[32:].split() for line in out.splitlines()}
+    assert "250, leading" in out.splitlines()[0] and "250, trailing" in out.splitlines()[0]
+    for i, shown in enumerate(printed["standard deviation, 20-50 Hz, N"]):
+        force, position = column[f"contact force {i + 1} [N]"], column[f"position {i + 1} [m]"]
+        inside = (position >= 180) & (position < 240)
+        band = np.fft.irfft(np.fft.rfft(force) * (gains[1] - gains[0]), len(rows))
+        assert float(shown) == pytest.approx(np.std(band[inside]), rel=0.02, abs=0.06)
+        assert np.mean(force[inside]) == pytest.approx(110, abs=1)  # of what is not filtered
+    lifted = f"{1e3 * column['uplift at 215 m [m]'].max():.1f}"
+    assert printed["largest uplift at 215 m, mm"] == [lifted, lifted, "1..2"]
+    assert f"largest uplift at 215 m at 250, trailing by +{float(lifted) - 2:.3g} mm" in out
+    (row,) = table(tmp_path / "out/runs.csv")
+    means = float(row["mean_force [N]"]), float(row["trailing: mean_force [N]"])
+    assert means == pytest.approx((110, 110), abs=0.1) and row["uplift [N]"] != row["trailing: uplift [N]"]
+    assert "250, trailing: mean force of the case: target 110.0 N, reached 1" in out
+
+
 def test_an_interrupted_validation_goes_on_with_what_is_missing(tmp_path):
     path = edition(tmp_path, 200, 230, 260, 290)
     arguments = ["en50318", "--edition", str(path), "--output", "out", "--jobs", "1"]
@@ -284,7 +319,7 @@ def test_the_empty_edition_is_written_once(tmp_path):
     _, err = zspring(tmp_path, "en50318", "--example", "mine", status=1)
     assert "exists and is kept" in err
     _, err = zspring(tmp_path, "en50318", "--edition", "mine/edition.toml", status=1)
-    assert "source is empty" in err
+    assert "case 1: speed is missing" in err
 
 
 @pytest.mark.parametrize(
@@ -310,6 +345,11 @@ def test_the_empty_edition_is_written_once(tmp_path):
         (["--head-speeds", "60"], "--head-speeds 60 km/h: too slow for the line of 10 spans"),
         (["--edition", "line.toml"], "no such file, and no set of that name"),
         (["--edition", "spans.toml"], "spans 2 to 4: must be in 2 .. 3"),
+        (["--edition", "two.toml"], "with two pantographs 60 m apart must be in 150 .. 150 m, where both have started"),
+        (["--quick", "--band", "50:20"], "'50:20': must be LOW:HIGH, frequencies in Hz from 0, as 20:50"),
+        (["--quick", "--band", "20:400"], "250 km/h: band up to 400 Hz: must be below 400 Hz at 0.001 s"),
+        (["--quick", "--point", "600"], "250 km/h: uplift at 600 m: must be in the line of 600 m"),
+        (["--quick", *(f"--point={x}" for x in range(1, 10))], "9 points with uplifts: must be at most 8"),
     ],
 )
 def test_bad_input_is_refused_in_one_line_and_nothing_is_written(arguments, message, tmp_path):
@@ -325,6 +365,7 @@ def test_bad_input_is_refused_in_one_line_and_nothing_is_written(arguments, mess
     np.savetxt(tmp_path / "pulled.csv", data, delimiter=",", header=columns, comments="")
     text = edition(tmp_path, 200).read_text(encoding="utf-8")
     (tmp_path / "line.toml").write_text(text.replace("short.ssv", "mine.ssv"), encoding="utf-8")
+    (tmp_path / "two.toml").write_text(text.replace("speed =", "spacing = 60\nspeed ="), encoding="utf-8")
     (tmp_path / "spans.toml").write_text(text.replace("last_span = 3", "last_span = 4"), encoding="utf-8")
     _, err = zspring(tmp_path, "en50318", *arguments, "--output", "out", status=1)
     assert message in err and len(err.strip().splitlines()) == 1

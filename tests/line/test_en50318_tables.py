@@ -13,15 +13,18 @@ from zspring.bench.curves import Curve
 from zspring.en50318 import comparison, report, summary
 from zspring.en50318.edition import judge, packaged_edition, read_edition
 from zspring.en50318.files import BY_SPAN
-from zspring.en50318.own_data import OwnData, agreement_chapter, series_chapter
+from zspring.en50318.line_test import BY_PLACE, Comparison
+from zspring.en50318.own_data import OwnData, series_chapter
 from zspring.en50318.workers import Finished
+from zspring.line.quantities import FIGURES
 from zspring.line.series import Series
-from zspring.line.statistics import FIGURES, Section
+from zspring.line.statistics import Section, statistics
 from zspring.page import BAD, GOOD, Cell, Table
 
 FOUND = {
     "mean_force": 100.0,
     "standard_deviation": 29.0,
+    "standard_deviation_0_2": 9.0,
     "standard_deviation_0_5": 12.0,
     "standard_deviation_5_20": 25.04,
     "statistical_maximum": 187.06,
@@ -29,6 +32,7 @@ FOUND = {
     "actual_maximum": 170.0,
     "actual_minimum": 5.0,
     "support_uplift": 55.0,
+    "midspan_uplift": 90.0,
     "contact_point_range": 80.0,
     "loss_of_contact": 0.126,
     "losses": 2.0,
@@ -224,6 +228,49 @@ def test_the_table_of_differences_has_mean_and_both_spreads():
 # Simulation against line test
 
 
+def at_60_m_a_second(name: str, force: np.ndarray) -> Series:
+    """A series of 1000 samples a second."""
+    time = np.arange(force.size) / 1000
+    return Series(name, time, force, 60 * time)
+
+
+def compared(simulated, measured) -> Comparison:
+    """Of these figures, over series that say nothing of them."""
+    series = at_60_m_a_second("x", 100 + np.sin(np.arange(2001)))
+    return Comparison(series, series, [None], [simulated], [measured], EDITION)
+
+
+def test_sections_and_spans_are_compared_each_for_itself():
+    """Spans of 60 m, a second each: means of 100 and 110, 120 and 100 N; the line test has 100 N throughout."""
+    steps = np.repeat([100.0, 100.0, 110.0, 100.0, 100.0, 120.0, 100.0, 100.0], 1000)
+    simulation, line_test = at_60_m_a_second("mine", steps), at_60_m_a_second("theirs", np.full(steps.size, 100.0))
+    sections = [Section.alike(2, 3, 60.0), Section.alike(6, 7, 60.0)]
+    figures = [[statistics(series, section) for section in sections] for series in (simulation, line_test)]
+    made = Comparison(simulation, line_test, sections, *figures, EDITION)
+    by_section, by_span = (rows_of(table) for table in made.place_tables(BY_PLACE))
+    expected = {"spans 2 to 3": (105, 5), "spans 6 to 7": (110, 10)}
+    for place, (mean, change) in expected.items():
+        found = by_section[place][0].text
+        assert found.endswith(f"(100.0) {change:+d} %") and float(found.split()[0]) == pytest.approx(mean, abs=0.5)
+    assert list(by_span) == ["span 2", "span 3", "span 6", "span 7"]
+    assert [float(row[0].text.split()[0]) for row in by_span.values()] == pytest.approx([100, 110, 120, 100], abs=0.9)
+    tables = [block for block in made.chapter().blocks if isinstance(block, Table)]
+    assert [table.caption for table in tables[:2]] == [f"Simulation and line test, {each}" for each in sections]
+    assert list(made.judged) == list(expected)
+
+
+def test_the_spectrum_has_a_sines_power_where_its_frequency_is():
+    """20 N at 7.25 Hz: 20^2 / 2 N2, of which the window spreads all but a thousandth over 1 Hz."""
+    time = np.arange(6000) / 1000
+    series = at_60_m_a_second("sine", 100 + 20 * np.sin(2 * np.pi * 7.25 * time))
+    frequency, density = Comparison(series, series, [Section.alike(2, 4, 60.0)], [FOUND], [FOUND], EDITION).spectrum(
+        series
+    )
+    near = np.abs(frequency - 7.25) <= 1.0
+    assert np.sum(density[near]) * frequency[1] == pytest.approx(200, rel=2e-3)
+    assert np.sum(density[~near]) * frequency[1] < 0.5
+
+
 @pytest.mark.parametrize(
     "factor, difference, said",
     [
@@ -235,7 +282,7 @@ def test_the_table_of_differences_has_mean_and_both_spreads():
 )
 def test_a_difference_is_judged_in_percent_of_the_line_test(factor, difference, said):
     simulated = {**FOUND, "support_uplift": factor * FOUND["support_uplift"]}
-    chapter = agreement_chapter(simulated, FOUND, EDITION)
+    chapter = compared(simulated, FOUND).chapter()
     (table,) = (block for block in chapter.blocks if isinstance(block, Table))
     rows = rows_of(table)
     assert texts(rows["largest uplift at a support, mm"])[2:] == [difference, "± 20 %", said]
@@ -254,7 +301,7 @@ def test_what_the_line_test_has_as_nothing_is_not_judged(whose, value):
     """Nor what one of both does not tell; a 0 of the simulation is 100 % too little."""
     given = {"simulated": dict(FOUND), "measured": dict(FOUND)}
     given[whose]["support_uplift"] = value
-    chapter = agreement_chapter(given["simulated"], given["measured"], EDITION)
+    chapter = compared(given["simulated"], given["measured"]).chapter()
     (table,) = (block for block in chapter.blocks if isinstance(block, Table))
     judged = texts(rows_of(table)["largest uplift at a support, mm"])[2:]
     if whose == "simulated" and value == 0.0:
@@ -276,7 +323,8 @@ def test_a_series_is_told_span_by_span_where_there_are_several(first, last, tabl
     time = np.arange(4001) / 1000
     force = np.where(time < 2, 100.0, 120.0)  # span 2 from 1 to 2 s, span 3 from 2 to 3 s
     series = Series("mine", time, force, 50 * time)
-    chapter = series_chapter(series, Section.alike(first, last, 50.0), None, "Contact force")
+    section = Section.alike(first, last, 50.0)
+    chapter = series_chapter(series, [section], [statistics(series, section)], None, "Contact force")
     found = [block for block in chapter.blocks if isinstance(block, Table)]
     assert len(found) == tables
     assert chapter.blocks[0] == "mine: 4001 samples, one each 1 ms."
@@ -288,11 +336,24 @@ def test_a_series_is_told_span_by_span_where_there_are_several(first, last, tabl
 
 
 def test_the_spans_asked_for_go_before_those_of_the_case():
-    data = OwnData(Path("a"), None, EDITION, None, None, (3, 4), 65.0, 10.0, 1)
-    assert data.section(None, None, []) == Section.alike(3, 4, 65.0, 10.0)
+    data = OwnData(Path("a"), None, EDITION, None, None, [(3, 4), (6, 6)], 65.0, 10.0, 1)
+    assert data.sections(None, []) == [Section.alike(3, 4, 65.0, 10.0), Section.alike(6, 6, 65.0, 10.0)]
     assert Section.alike(3, 4, 65.0, 10.0).bounds == (140.0, 270.0)
-    whole = OwnData(Path("a"), None, EDITION, None, None, None, 65.0, 10.0, 1)
-    assert whole.section(None, None, []) is None
+    whole = OwnData(Path("a"), None, EDITION, None, None, [], 65.0, 10.0, 1)
+    assert whole.sections(None, []) == []
+
+
+@pytest.mark.parametrize("head, first_support", [("# first support: 12345 m\n", None), ("", 12345.0)])
+def test_a_line_test_counts_from_the_simulations_first_support(head, first_support, tmp_path):
+    """The simulation's head says 0 m; --first-support is for a file whose head says nothing."""
+    for name, begin, says in ("a", 0, "# first support: 0 m\n"), ("b", 12345, head):
+        rows = (f"{i / 500},{100 + i % 7},{begin + i / 10}\n" for i in range(600))
+        text = "".join([says, "time [s],contact force [N],position [m]\n", *rows])
+        (tmp_path / f"{name}.csv").write_text(text, encoding="utf-8")
+    data = OwnData(tmp_path / "a.csv", tmp_path / "b.csv", EDITION, None, None, [(2, 2)], 20.0, first_support, 1)
+    simulation, line_test = data.read().values()
+    assert line_test.position == pytest.approx(simulation.position)
+    assert data.sections(None, [simulation, line_test]) == [Section.alike(2, 2, 20.0)]
 
 
 # Frequency responses

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..fmu import Fmu
-from ..line.limits import near_wave_speed, of_series
-from ..line.result import read_result
-from ..line.series import Series
 from ..line.statistics import Statistics, statistics
 from ..page import Chapter, Picture, Table
 from . import plot, report, summary
 from .edition import Edition, Judgement, judge
+from .passage import Passage, passages
 from .plan import Run, slug
 from .workers import Finished
 
@@ -25,58 +23,45 @@ FILTERS = {  # order of the two-pass filter, by what the tables call it
 
 @dataclass(frozen=True)
 class Outcome:
-    """An edition's runs with their series, figures, and ranges; in the order of its cases."""
+    """What an edition's runs came to, in the order of its cases, each leading pantograph before the trailing one."""
 
     edition: Edition
-    runs: Sequence[Run]
-    series: Sequence[Series]
-    found: Sequence[Statistics]
-    uplifts: Sequence[float]  # N
+    passages: Sequence[Passage]
+
+    @property
+    def leading(self) -> list[Passage]:
+        """Those of the leading pantographs, and of those that are alone: one for each case."""
+        return [each for each in self.passages if not each.number]
 
     @property
     def judged(self) -> dict[str, list[Judgement]]:
-        """By title of the case."""
-        cases = zip(self.edition.cases, self.found)
-        return {case.title: judge(found, case.ranges) for case, found in cases}
+        """By title of the passage."""
+        return {each.title: each.judged for each in self.passages}
 
     def summary_rows(self) -> list[summary.Row]:
         """The rows of the box on top."""
-        name = self.edition.name
         return [
             summary.row(
-                f"{name}, {case.title}",
-                Path(case.pantograph).stem,
-                Path(case.line).stem,
-                case.speed,
-                run.section,
-                self.judged[case.title],
-                found,
+                f"{self.edition.name}, {each.title}",
+                Path(each.case.pantograph).stem,
+                Path(each.case.line).stem,
+                each.run.speed,
+                each.run.section,
+                each.judged,
+                each.found,
             )
-            for case, run, found in zip(self.edition.cases, self.runs, self.found)
+            for each in self.passages
         ]
 
     def remarks(self, catenary: Fmu) -> list[str]:
         """Lines on mean forces that were aimed at, and on what the line's model is not good for."""
-        lines = []
-        for case, run, series, found, uplift in zip(
-            self.edition.cases, self.runs, self.series, self.found, self.uplifts
-        ):
-            if run.mean_force is not None:
-                lines.append(
-                    f"{case.title}: mean force of {case.supply} lines at {case.speed:g} km/h: target "
-                    f"{run.mean_force:.1f} N, reached {found['mean_force']:.1f} N with a static force of "
-                    f"{case.static_force:.1f} N and an uplift of {uplift:.1f} N on the upper frame"
-                )
-            limits = near_wave_speed(catenary, run.line, run.speed / 3.6) + of_series(series, run.section)
-            lines += [f"{case.title}: {line}" for line in limits]
-        return lines
+        return [f"{each.title}: {line}" for each in self.passages for line in each.remarks(catenary)]
 
 
 def outcome(edition: Edition, runs: Sequence[Run], done: Mapping[str, Finished], folder: Path) -> Outcome:
     """What the runs of an edition came to; their series are read from the folder."""
-    results = [read_result(folder / run.series).series(0) for run in runs]
-    finished = [done[run.key] for run in runs]
-    return Outcome(edition, runs, results, [each.statistics for each in finished], [each.uplift for each in finished])
+    each = (passages(case, run, done[run.key], folder) for case, run in zip(edition.cases, runs))
+    return Outcome(edition, [passage for of_case in each for passage in of_case])
 
 
 def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
@@ -91,21 +76,19 @@ def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
     else:
         chapter.blocks.append("No accepted ranges are known to us, so that nothing is judged here.")
     chapter.blocks += [f"{line}." for line in made.remarks(catenary)]
-    for case, run, one, found in zip(edition.cases, made.runs, made.series, made.found):
-        title = f"{edition.name}, {case.title}"
-        by_span = {str(s).split(",")[0]: statistics(one, s) for s in run.section.single_spans()}
+    for each in made.passages:
+        title = f"{edition.name}, {each.title}"
         chapter.blocks += [
-            report.case_table(found, judged[case.title], case.speed, f"{title}: {run.section}"),
-            Picture(
-                plot.force_figure(one, run.section, found, title),
-                f"{title}: contact force, height of the contact point and uplift at the supports",
-                run.series.replace(".csv", ".png"),
+            report.case_table(
+                each.found, each.judged, each.run.speed, f"{title}: {each.run.section}", each.case.target
             ),
-            report.spans_table(found, by_span, f"{title}, span by span"),
+            each.picture(title),
+            report.spans_table(each.found, each.by_span(), f"{title}, span by span"),
         ]
     seen: dict[tuple[str, str], Table] = {}
-    for case, run in zip(edition.cases, made.runs):
-        seen.setdefault((case.line, case.pantograph), report.parameter_table(case, run, catenary, pantograph))
+    for each in made.leading:
+        key = each.case.line, each.case.pantograph
+        seen.setdefault(key, report.parameter_table(each.case, each.run, catenary, pantograph))
     chapter.blocks += seen.values()
     return chapter
 
@@ -113,9 +96,11 @@ def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
 def choices(made: Outcome, runs: Sequence[Run], found: Mapping[str, Statistics]) -> dict[str, dict[str, Statistics]]:
     """Figures with other choices, by title of the edition's case and choice."""
     by_case = {}
-    for case, run, one in zip(made.edition.cases, made.runs, made.series):
+    for each in made.leading:
+        run = each.run
         own = {r.label: found[r.key] for r in runs if r.of == f"{run.of}, {run.label}"}
-        by_case[case.title] = own | {name: statistics(one, run.section, order) for name, order in FILTERS.items()}
+        filtered = {name: statistics(each.series, run.section, order) for name, order in FILTERS.items()}
+        by_case[each.case.title] = own | filtered
     return by_case
 
 
@@ -132,7 +117,8 @@ def judged_choices(
 def sensitivity_chapter(made: Outcome, found: Mapping[str, Mapping[str, Statistics]]) -> Chapter:
     """What other choices do to the figures of an edition's cases; `found` as `choices` gives it."""
     drawn, listed, judged = {}, [], judged_choices(made, found)
-    for case, reference in zip(made.edition.cases, made.found):
+    for each in made.leading:
+        case, reference = each.case, each.found
         rows = {"reference": judge(reference, case.ranges), **judged[case.title]}
         listed.append(report.sensitivity_table(reference, found[case.title], rows, case.title))
         drawn[case.title] = reference, found[case.title], case.ranges.get("standard_deviation")

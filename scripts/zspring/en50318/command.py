@@ -12,6 +12,7 @@ from ..options import (
     FILE,
     NOT_NEGATIVE,
     POSITIVE,
+    Band,
     Spans,
     choice,
     copy_examples,
@@ -51,9 +52,35 @@ EDITIONS = ("en-50318-2002", "benchmark-2015")
 @option("--line-test", kind=FILE, metavar="FILE.csv", help="A measured contact force, to compare --series with.")
 @option("--case", "case_title", kind=str, metavar="TITLE", help="Compare --series with the ranges of this case.")
 @option("--speed", kind=POSITIVE, metavar="V", help="Of series without times or positions, in km/h.")
-@option("--spans", kind=Spans(), metavar="FIRST:LAST", help="Spans to evaluate.  [default: of the case, or all]")
+@click.option(
+    "--spans",
+    type=Spans(),
+    multiple=True,
+    metavar="FIRST:LAST",
+    help="Spans to evaluate; repeat it for each tension section.  [default: of the case, or all]",
+)
+@click.option(
+    "--band",
+    "bands",
+    type=Band(),
+    multiple=True,
+    metavar="LOW:HIGH",
+    help="Tell the standard deviation of this frequency band in Hz, too; repeatable. Those of 0-2, 0-5, 5-20 and "
+    "0-20 Hz are told anyway.",
+)
+@click.option(
+    "--point",
+    "points",
+    type=POSITIVE,
+    multiple=True,
+    metavar="X",
+    help="Tell the largest uplift of the contact wire X m along the line, too; repeatable. At supports and mid-span it "
+    "is told anyway.",
+)
 @option("--span", kind=POSITIVE, metavar="L", help="Length of a span in m.  [default: of the file's head or the case]")
-@option("--first-support", metavar="X", help="Where span 1 begins, m.  [default: of the file's head, or 0]")
+@option(
+    "--first-support", metavar="X", help="Where span 1 begins in files whose head does not say it, m.  [default: 0]"
+)
 @click.option(
     "--turn-force",
     type=click.Choice(["series", "line-test"]),
@@ -127,10 +154,12 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
             raise click.UsageError(f"--{name.removesuffix('_title').replace('_', '-')} is for --series and --line-test")
     if output is None:
         output = Path("results", "-".join(["en50318", *(path.stem for path in (series, line_test, frf) if path)]))
+    from ..line.quantities import band_figure, point_figure
     from .edition import packaged_edition, read_edition  # matplotlib and scipy are slow to load
 
     paths = [edition_path] if edition_path else [packaged_edition(name) for name in EDITIONS]
-    editions = [read_edition(path) for path in paths]
+    further = [*(band_figure(*band) for band in given["bands"]), *map(point_figure, given["points"])]
+    editions = [read_edition(path).with_figures(further) for path in paths]
     with (
         pantograph.opened(("drive",)) as (fmu, parameters),
         opened(given["line_fmu"] or installed_fmu(CATENARY)) as catenary,
@@ -155,8 +184,9 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
         source = frf and Source(
             frf, given["frf_amplitude"], given["frf_force"], given["fixture_mass"], given["frf_data_sets"]
         )
-        place = (given[name] for name in ("spans", "span", "first_support", "number", "turn_force"))
         speed = given["speed"] and given["speed"] / 3.6
-        data = OwnData(series, line_test, editions[0], given["case_title"], speed, *place)
+        names = ("spans", "span", "first_support", "pantograph", "turned")
+        place = dict(zip(names, (given[n] for n in ("spans", "span", "first_support", "number", "turn_force"))))
+        data = OwnData(series, line_test, editions[0], given["case_title"], speed, **place, further=further)
         bands, direction = given["frf_bands"], given["direction"]
         report_on(data, source, parameters, bands, direction, fmu, catenary, output, jobs)

@@ -7,7 +7,7 @@ EN 50318:2002 and the benchmark of 2015 come with the package. Later editions ar
 from __future__ import annotations
 
 import importlib.resources
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,7 +16,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from ..errors import ZSpringError, did_you_mean
 from ..line.mean_force import STANDING, mean_force
-from ..line.statistics import FIGURES, Statistics
+from ..line.quantities import FIGURES, FREE, Statistics, is_figure, points_of
 from ..parameter_sets import LINES, PANTOGRAPHS, find_set
 from ..settings import Pair, Positive, Table, fitting, set_name, settings_of
 
@@ -25,18 +25,21 @@ MOST_SPEED = 600.0  # km/h
 
 
 def _known(figures: Any) -> Any:
-    for name in figures if isinstance(figures, Mapping) else ():
-        if name not in FIGURES:
-            raise ValueError(f"unknown figure {name!r}{did_you_mean(name, FIGURES)}")
+    """A list of figures, or values by figure. Raises ValueError for a name that is none."""
+    for name in figures if isinstance(figures, (Mapping, list)) else ():
+        if isinstance(name, str) and not is_figure(name):
+            other = did_you_mean(name, FIGURES) or f": free ones are {FREE}"
+            raise ValueError(f"unknown figure {name!r}{other}")
     return figures
 
 
 Range = Annotated[Pair, fitting("must be [lowest, highest]", lambda ends: ends[0] <= ends[1])]
+Ranges = Annotated[dict[str, Range], BeforeValidator(_known)]
 Supply = Annotated[str, fitting(f"must be one of {', '.join(STANDING)}", ("", *STANDING).__contains__)]
 
 
 class Case(Table):
-    """One run of an edition."""
+    """One run of an edition, with one pantograph or two."""
 
     title: str
     line: Annotated[str, set_name(LINES)]
@@ -44,19 +47,37 @@ class Case(Table):
     speed: Positive = Field(description="km/h")
     first_span: int = Field(ge=1, description="that is evaluated, from 1")
     last_span: int = Field(ge=1, description="that is evaluated")
+    spacing: Positive | None = Field(None, description="m, from the leading pantograph back to a trailing one")
     given_force: Positive | None = Field(None, alias="static_force", description="N")
     supply: Supply = Field("", description="whose mean force by speed the run has")
-    ranges: Annotated[dict[str, Range], BeforeValidator(_known)] = Field({}, description="in the units of FIGURES")
+    given_mean: Positive | None = Field(None, alias="mean_force", description="N, that the run has")
+    figures: Annotated[list[str], BeforeValidator(_known)] = Field([], description="further ones that are told")
+    ranges: Ranges = Field({}, description="in the units of FIGURES, of the leading pantograph or the only one")
+    trailing_ranges: Ranges = Field({}, description="of the trailing one")
+
+    @property
+    def target(self) -> float | None:
+        """Mean force in N that each pantograph is to have over the evaluated spans, by an uplift; None: it has what
+        it has."""
+        return mean_force(self.supply, self.speed) if self.supply else self.given_mean
 
     @property
     def static_force(self) -> float:
-        """Static force in N; the mean force where that is given by the supply."""
-        return mean_force(self.supply, self.speed) if self.given_force is None else self.given_force
+        """N; the target where none is given."""
+        force = self.target if self.given_force is None else self.given_force
+        assert force is not None  # see _fits
+        return force
 
     @property
-    def mean_force(self) -> float | None:
-        """N, that the run is to have over the evaluated spans, by an uplift; None: it has what it has."""
-        return mean_force(self.supply, self.speed) if self.supply else None
+    def further(self) -> tuple[str, ...]:
+        """Figures that are told besides FIGURES."""
+        names = (*self.figures, *self.ranges, *self.trailing_ranges)
+        return tuple(dict.fromkeys(name for name in names if name not in FIGURES))
+
+    @property
+    def points(self) -> tuple[float, ...]:
+        """Positions in m at which uplifts are told."""
+        return points_of(self.further)
 
     @model_validator(mode="after")
     def _fits(self) -> Case:
@@ -64,10 +85,12 @@ class Case(Table):
             raise ValueError(f"speed = {self.speed:g} km/h: must be at most {MOST_SPEED:g} km/h")
         if self.last_span < self.first_span:
             raise ValueError(f"last_span = {self.last_span}: must be a whole number of at least {self.first_span}")
-        if not self.supply and self.given_force is None:
-            raise ValueError("static_force is missing")
-        if self.supply and self.given_force is not None:
-            raise ValueError("static_force and supply: give one of them")
+        if self.supply and self.given_mean is not None:
+            raise ValueError("supply and mean_force: give one of them")
+        if self.target is None and self.given_force is None:
+            raise ValueError("static_force is missing (or the mean force that the run has: supply or mean_force)")
+        if self.trailing_ranges and self.spacing is None:
+            raise ValueError("trailing_ranges: need a trailing pantograph, spacing")
         return self
 
 
@@ -92,6 +115,13 @@ class Edition(Table):
             if titles.count(title) > 1:
                 raise ValueError(f"two cases {title!r}")
         return self
+
+    def with_figures(self, names: Sequence[str]) -> Edition:
+        """The edition with further figures that each case tells."""
+        if not names:
+            return self
+        cases = [case.model_copy(update={"figures": [*case.figures, *names]}) for case in self.cases]
+        return self.model_copy(update={"cases": cases})
 
     def only_first(self) -> Edition:
         """The edition with its first case alone."""

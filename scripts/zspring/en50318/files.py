@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from ..line.statistics import FIGURES
+from ..line.quantities import FIGURES
 from ..records import Record
 from .plan import Run
 from .workers import Finished
@@ -26,6 +26,8 @@ COLUMNS = [
     *FIGURE_COLUMNS.values(),
     *SPAN_COLUMNS.values(),
     "uplift [N]",
+    *(f"trailing: {column}" for column in FIGURE_COLUMNS.values()),
+    "trailing: uplift [N]",
     "CPU [s]",
     "key",
 ]
@@ -52,7 +54,9 @@ def put_in_order(record: Record[Finished], runs: Iterable[Run]) -> None:
 def _to_row(finished: Finished) -> list[object]:
     numbers = (float(finished.statistics[name]) for name in FIGURES)
     spans = (finished.by_span[n][name] if n < len(finished.by_span) else math.nan for name, n in SPAN_COLUMNS)
-    return [*finished.told, *numbers, *spans, finished.uplift, f"{finished.seconds:.3f}", finished.key]
+    trailing = (finished.trailing[name] if finished.trailing else math.nan for name in FIGURES)
+    uplifts = finished.uplift, *trailing, finished.trailing_uplift
+    return [*finished.told, *numbers, *spans, *uplifts, f"{finished.seconds:.3f}", finished.key]
 
 
 def _from_row(row: Mapping[str, str]) -> Finished:
@@ -60,4 +64,7 @@ def _from_row(row: Mapping[str, str]) -> Finished:
     spans = ({name: float(row[SPAN_COLUMNS[name, n]] or "nan") for name in BY_SPAN} for n in range(SPANS))
     by_span = tuple(span for span in spans if not math.isnan(span[BY_SPAN[0]]))
     told = tuple(row[name] for name in COLUMNS[:5])
-    return Finished(row["key"], told, found, by_span, float(row["uplift [N]"]), float(row["CPU [s]"]))
+    trailing = {name: float(row[f"trailing: {column}"] or "nan") for name, column in FIGURE_COLUMNS.items()}
+    uplifts = [float(row[f"{whose}uplift [N]"] or "nan") for whose in ("", "trailing: ")]
+    second = None if math.isnan(uplifts[1]) else trailing
+    return Finished(row["key"], told, found, by_span, uplifts[0], float(row["CPU [s]"]), second, uplifts[1])

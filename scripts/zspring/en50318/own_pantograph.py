@@ -8,9 +8,9 @@ from pathlib import Path
 
 from ..fmu import Fmu
 from ..heads import synthetic_note
-from ..page import WORDS, Cell, Chapter, Picture, Table
+from ..page import WORDS, Cell, Chapter, Table
 from ..variables import Value, with_unit
-from . import plot, report, summary
+from . import report, summary
 from .chapters import Outcome
 from .plan import Run
 
@@ -43,14 +43,11 @@ class OwnPantograph:
         chapter = Chapter(f"Own pantograph: {self.name}{synthetic_note(pantograph, self._used(pantograph))}", [text])
         for reference, own in outcomes:
             chapter.blocks += [f"{own.edition.name}: {line}." for line in own.remarks(catenary)]
-            for i, (case, run) in enumerate(zip(own.edition.cases, own.runs)):
-                title = f"{self.name}, {own.edition.name}, {case.title}"
-                both = {self.name: own.found[i], f"reference: {Path(case.pantograph).stem}": reference.found[i]}
-                figure = plot.force_figure(own.series[i], run.section, own.found[i], title)
-                chapter.blocks += [
-                    report.figures_table(both, f"{title}: {run.section}"),
-                    Picture(figure, f"{title}: contact force, height and uplift", run.series.replace(".csv", ".png")),
-                ]
+            for mine, theirs in zip(own.passages, reference.passages):
+                title = f"{self.name}, {own.edition.name}, {mine.title}"
+                both = {self.name: mine.found, f"reference: {Path(mine.case.pantograph).stem}": theirs.found}
+                table = report.figures_table(both, f"{title}: {mine.run.section}")
+                chapter.blocks += [table, mine.picture(title)]
         rows: list[list[str | Cell]] = [
             [name, Cell(with_unit(pantograph.variables[name], value), WORDS)] for name, value in self.parameters.items()
         ]
@@ -61,15 +58,15 @@ class OwnPantograph:
         """The rows of the box on top."""
         return [
             summary.row(
-                f"own pantograph, {own.edition.name}",
+                f"own pantograph, {own.edition.name}, {each.title}",
                 self.name,
-                Path(case.line).stem,
-                case.speed,
-                run.section,
+                Path(each.case.line).stem,
+                each.run.speed,
+                each.run.section,
                 None,
-                found,
+                each.found,
             )
-            for case, run, found in zip(own.edition.cases, own.runs, own.found)
+            for each in own.passages
         ]
 
     def _used(self, pantograph: Fmu) -> dict[str, Value]:
@@ -84,12 +81,12 @@ def name_of(parameter_set: str | None, assignments: Sequence[str]) -> str:
 
 def lines(name: str, own: Outcome, reference: Outcome, catenary: Fmu) -> list[str]:
     """What the command prints: main figures by case, those of the reference in brackets, and the limit of quality."""
-    cases = own.edition.cases
     rows: list[list[str | Cell]] = []
     for figure in (*report.SENSITIVE, "loss_of_contact"):
-        both = [[report.number(figure, each[figure]) for each in pair] for pair in zip(own.found, reference.found)]
+        pairs = zip(own.passages, reference.passages)
+        both = [[report.number(figure, each.found[figure]) for each in pair] for pair in pairs]
         rows.append([report.labelled(figure), *(f"{mine} ({theirs})" for mine, theirs in both)])
     title = f"{name}, {own.edition.name} (reference pantograph)"
-    table = Table("", [title, *(case.title for case in cases)], rows)
-    share = summary.shares(name, {case.title: found for case, found in zip(cases, own.found)})
+    table = Table("", [title, *(each.title for each in own.passages)], rows)
+    share = summary.shares(name, {each.title: each.found for each in own.passages})
     return [*report.as_lines(table), share, *own.remarks(catenary), ""]

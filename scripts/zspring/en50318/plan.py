@@ -11,9 +11,11 @@ from typing import Any
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..line.evaluated import stop_behind
-from ..line.journey import FittedJourney, LineExtent
+from ..line.journey import FittedJourney, Journey, LineExtent
 from ..line.mean_force import mean_force
-from ..line.statistics import Section
+from ..line.quantities import band_of
+from ..line.statistics import Section, highest_band
+from ..line.system import most_points
 from ..line.waves import fastest, undisturbed_until
 from ..parameter_sets import ACCURATE_STEP, LINES, chosen_set
 from ..variables import Value, parse
@@ -47,6 +49,8 @@ class Run:
     start_up: str = "ramp"
     start: float | None = None  # m along the line; None: half a span
     stop: float | None = None  # m; None: half a span before the end
+    spacing: float = 0.0  # m, back to a trailing pantograph of the same parameters; 0: there is none
+    points: tuple[float, ...] = ()  # m, whose uplift is kept, before that at the middles of the section's spans
     series: str = ""  # name of the file that its series is written to; none: not kept
 
     @property
@@ -177,15 +181,23 @@ def _head_section(speed: float, extent: LineExtent, wave: float) -> Section:
 def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run:
     line = chosen_set(case.line, catenary, LINES)
     parameters = {**_pantograph(case.pantograph, pantograph), "static_force": case.static_force}
+    section = section_of(case, catenary, line)
+    extent = LineExtent.of(catenary, line)
+    if case.spacing:
+        _require_room(case, section, extent)
+    _require_told(case, catenary, extent)
     return Run(
         "reference",
         case.title,
         edition.name,
         case.speed,
-        section_of(case, catenary, line),
+        section,
         line,
         parameters,
-        mean_force=case.mean_force,
+        uplift=0.0 if case.target is None else case.target - case.static_force,
+        mean_force=case.target,
+        spacing=case.spacing or 0.0,
+        points=case.points,
         series=f"{slug(f'{edition.name} {case.title}')}.csv",
     )
 
@@ -205,6 +217,30 @@ def section_of(case: Case, catenary: Fmu, line: Parameters) -> Section:
             f"the last span of the line"
         )
     return extent.section(first, last)
+
+
+def _require_room(case: Case, section: Section, extent: LineExtent) -> None:
+    """Raises ZSpringError where not both pantographs have started up before the section, or one has not left it."""
+    journey = extent.complete(Journey(case.speed / 3.6, spacing=case.spacing or 0.0), 2)
+    low, high = journey.start + extent.run_up(journey.start), journey.stop - journey.spacing
+    begin, end = section.bounds
+    if begin < low or end > high:
+        raise ZSpringError(
+            f"{case.title}: {section}: with two pantographs {journey.spacing:g} m apart must be in {low:g} .. {high:g} "
+            "m, where both have started up and before the first one leaves the line: take a longer line, or other spans"
+        )
+
+
+def _require_told(case: Case, catenary: Fmu, extent: LineExtent) -> None:
+    """Raises ZSpringError for a point or a band of the case that a run does not tell."""
+    if len(case.points) > (most := most_points(catenary)):
+        raise ZSpringError(f"{case.title}: {len(case.points)} points with uplifts: must be at most {most}")
+    for point in case.points:
+        if not 0 < point < extent.length:
+            raise ZSpringError(f"{case.title}: uplift at {point:g} m: must be in the line of {extent.length:g} m")
+    for _, high in filter(None, map(band_of, case.further)):
+        if not high < (highest := highest_band(Run.step)):
+            raise ZSpringError(f"{case.title}: band up to {high:g} Hz: must be below {highest:g} Hz at {Run.step:g} s")
 
 
 def slug(text: str) -> str:

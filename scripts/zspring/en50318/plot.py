@@ -12,32 +12,36 @@ from matplotlib.figure import Figure
 from ..bench.compare import LevelComparison
 from ..bench.responses import phase_degrees
 from ..figures import legend_beside, new_figure
+from ..line.quantities import Statistics, described
 from ..line.result import SLIPPING, LineResult
 from ..line.series import Series
-from ..line.statistics import FIGURES, Section, Statistics, low_pass
+from ..line.statistics import Section, inside, low_pass
 from .edition import Judgement
 
 COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:purple")
 STYLES = ("-", "-", ":", "--")
+EDGES = (2.0, 5.0, 20.0)  # Hz, of the standard's bands
 SHADE: dict[str, Any] = {"color": "tab:green", "alpha": 0.12, "linewidth": 0}
 
 
 def force_figure(series: Series, section: Section | None, found: Statistics, title: str) -> Figure:
-    """Contact force, unfiltered and 0-20 Hz, with its statistics, then height and uplift where there are any.
+    """Contact force, unfiltered and 0-20 Hz, with its statistics, then height and uplifts where there are any.
 
     Over the position, or the time where there is none.
     """
     along, label = series.time, "time  [s]"
     if series.position is not None:
         along, label = series.position, "position along the line  [m]"
-    uplift = series.uplift or {}
-    panels = 1 + (series.height is not None) + bool(uplift)
+    low, high = section.bounds if section else along[[0, -1]]
+    places = series.support_position or {}
+    near = {k: v for k, v in (series.uplift or {}).items() if low - 1e-6 <= places.get(k, low) <= high + 1e-6}
+    points = {f"wire at {x:g} m": values for x, values in series.points.items()}
+    panels = 1 + (series.height is not None) + bool(near or points)
     figure = new_figure(10, 1.2 + 2.2 * panels)
     all_axes = figure.subplots(panels, 1, sharex=True, squeeze=False, height_ratios=[1.6, *[1] * (panels - 1)])[:, 0]
     axes = all_axes[0]
     axes.plot(along, series.force, color="0.65", linewidth=0.6, label="unfiltered")
     axes.plot(along, low_pass(series.force, series.step), color=COLOURS[0], linewidth=1.4, label="0-20 Hz")
-    low, high = section.bounds if section else along[[0, -1]]
     lines = (("mean_force", "-", "mean"), ("statistical_maximum", "--", "mean ± 3σ"), ("statistical_minimum", "--", ""))
     for name, style, text in lines:
         axes.plot([low, high], [found[name]] * 2, style, color="tab:red", linewidth=1, label=text or None)
@@ -49,15 +53,13 @@ def force_figure(series: Series, section: Section | None, found: Statistics, tit
         axes = next(rest)
         axes.plot(along, 1e3 * series.height, color=COLOURS[0], linewidth=1.2)
         axes.set_ylabel("contact point\nheight  [mm]")
-    if uplift:
+    if near or points:
         axes = next(rest)
-        places = series.support_position or {}
-        near = {k: v for k, v in uplift.items() if low - 1e-6 <= places.get(k, low) <= high + 1e-6}
-        for (name, values), colour in zip(
-            near.items(), matplotlib.colormaps["viridis"](np.linspace(0, 0.8, len(near)))
-        ):
-            axes.plot(along, 1e3 * values, color=colour, linewidth=1.2, label=name)
-        axes.set_ylabel("support\nuplift  [mm]")
+        for lifted, style in (near, "-"), (points, "--"):
+            colours = matplotlib.colormaps["viridis"](np.linspace(0, 0.8, len(lifted)))
+            for (name, values), colour in zip(lifted.items(), colours):
+                axes.plot(along, 1e3 * values, style, color=colour, linewidth=1.2, label=name)
+        axes.set_ylabel("uplift  [mm]")
         legend_beside(axes)
     for axes in all_axes:
         axes.axvspan(low, high, **SHADE)
@@ -80,7 +82,7 @@ def ranges_figure(by_case: Mapping[str, Sequence[Judgement]], title: str) -> Fig
         places = [(j.value - j.accepted[0]) / _width(j) for j in shown]
         rows = [names.index(j.name) + shift for j in shown]
         axes.plot(places, rows, marker, color=colour, label=case, markersize=7)
-    axes.set_yticks(range(len(names)), [FIGURES[name][0] for name in names])
+    axes.set_yticks(range(len(names)), [described(name)[0] for name in names])
     axes.invert_yaxis()
     axes.set_xlim(min(-0.3, axes.get_xlim()[0]), max(1.3, axes.get_xlim()[1]))
     axes.set_xticks([0, 0.5, 1], ["lower end", "middle", "upper end"])
@@ -191,6 +193,44 @@ def frf_comparison_figure(comparisons: Sequence[LevelComparison], edges: Sequenc
     magnitude.set(title=title, ylabel="|H|, receptance  [m/N]")
     phase.set(xlabel="frequency  [Hz], bands by dashed lines", ylabel="phase  [deg]")
     magnitude.legend(fontsize=8, title="points measured, lines computed", title_fontsize=8)
+    return figure
+
+
+def overlay_figure(simulation: Series, line_test: Series, sections: Sequence[Section | None]) -> Figure | None:
+    """Contact force of 0-20 Hz of both over the position, a panel for each section; None where one has no positions."""
+    if simulation.position is None or line_test.position is None:
+        return None
+    both = (line_test, line_test.position, "0.25"), (simulation, simulation.position, COLOURS[0])
+    figure = new_figure(10, 1.0 + 2.4 * len(sections))
+    for axes, section in zip(figure.subplots(len(sections), 1, squeeze=False)[:, 0], sections):
+        for (series, position, colour), name in zip(both, ("line test", "simulation")):
+            shown, force = inside(series, section), low_pass(series.force, series.step)
+            axes.plot(position[shown], force[shown], color=colour, linewidth=1.3, label=name)
+        for edge in section.edges if section else ():
+            axes.axvline(edge, color="0.8", linewidth=0.8, zorder=0)
+        axes.set_title(str(section or "the whole series"), fontsize=10)
+        axes.set_ylabel("contact force,\n0-20 Hz  [N]")
+        axes.margins(x=0)
+        axes.grid(True, axis="y", linewidth=0.4, alpha=0.5)
+        legend_beside(axes)
+    axes.set_xlabel("position along the line, of the simulation  [m]; supports as vertical lines")
+    return figure
+
+
+def spectra_figure(spectra: Mapping[str, tuple[np.ndarray, np.ndarray]], until: float) -> Figure:
+    """Power spectral densities in N2/Hz over the frequency up to `until` Hz, by name; the standard's bands marked."""
+    figure = new_figure(10, 4.5)
+    axes = figure.subplots()
+    for (name, (frequency, density)), colour in zip(spectra.items(), (COLOURS[0], "0.25")):
+        shown = (frequency > 0) & (frequency <= until)
+        axes.semilogy(frequency[shown], density[shown], color=colour, linewidth=1.3, label=name)
+    for edge in EDGES:
+        axes.axvline(edge, color="0.6", linewidth=0.8, linestyle="--")
+    axes.set_xlim(0, until)
+    axes.set_xlabel("frequency  [Hz]; dashed: 2, 5 and 20 Hz")
+    axes.set_ylabel("power spectral density\nof the contact force  [N²/Hz]")
+    axes.grid(True, which="both", linewidth=0.4, alpha=0.5)
+    legend_beside(axes)
     return figure
 
 

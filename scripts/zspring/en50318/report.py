@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from ..bench.compare import LevelComparison
 from ..fmu import Fmu
 from ..line.mean_force import mean_force
-from ..line.statistics import FIGURES, Statistics
+from ..line.quantities import Statistics, described
 from ..page import BAD, GOOD, WORDS, Cell, Table
 from ..parameter_sets import describe_set
 from ..text_tables import aligned
@@ -31,11 +31,11 @@ SENSITIVE = (
 
 def number(name: str, value: float) -> str:
     """A figure with its digits; a dash where the series does not tell it."""
-    return "-" if math.isnan(value) else f"{value:.{FIGURES[name][2]}f}"
+    return "-" if math.isnan(value) else f"{value:.{described(name)[2]}f}"
 
 
 def labelled(name: str) -> str:
-    label, unit, _ = FIGURES[name]
+    label, unit, _ = described(name)
     return f"{label}, {unit}" if unit else label
 
 
@@ -48,13 +48,15 @@ def distance(judgement: Judgement) -> Cell:
     return Cell(f"outside by {judgement.outside:+.3g}", BAD)
 
 
-def case_table(found: Statistics, judgements: Sequence[Judgement], speed: float | None, caption: str) -> Table:
+def case_table(
+    found: Statistics, judgements: Sequence[Judgement], speed: float | None, caption: str, target: float | None = None
+) -> Table:
     """All figures at `speed` km/h, with the accepted ranges where there are any; then deviation and mean force
-    beside what papers quote as the limits of current collection."""
+    beside what papers quote as the limits of current collection, or the mean force of the case, `target` N."""
     by_name = {judgement.name: judgement for judgement in judgements}
     rows = []
-    for name in FIGURES:
-        row: list[str | Cell] = [labelled(name), number(name, found[name])]
+    for name, value in found.items():
+        row: list[str | Cell] = [labelled(name), number(name, value)]
         if judgements:
             judged = by_name.get(name)
             row += ["{:g} to {:g}".format(*judged.accepted), distance(judged)] if judged else ["", ""]
@@ -65,16 +67,18 @@ def case_table(found: Statistics, judgements: Sequence[Judgement], speed: float 
     judged_share: list[str | Cell] = [f"at most {part.accepted[1]:g}", inside] if judgements else []
     label = f"{part.name}, of current collection"
     rows.append([label, f"{part.value:.3f}", *judged_share])
-    if speed:
-        target = number("mean_force", mean_force("AC", speed))
-        rows.append(["target mean force of AC lines, N", target, *blank])
+    if target is not None:
+        rows.append(["target mean force, N", number("mean_force", target), *blank])
+    elif speed:
+        rows.append(["target mean force of AC lines, N", number("mean_force", mean_force("AC", speed)), *blank])
     return Table(caption, ["", "found", *(["accepted", ""] if judgements else [])], rows)
 
 
 def figures_table(found: Mapping[str, Statistics], caption: str) -> Table:
     """Figures of several series or runs side by side."""
+    names = dict.fromkeys(name for each in found.values() for name in each)
     rows: list[list[str | Cell]] = [
-        [labelled(name), *(number(name, each[name]) for each in found.values())] for name in FIGURES
+        [labelled(name), *(number(name, each.get(name, math.nan)) for each in found.values())] for name in names
     ]
     return Table(caption, ["", *found], rows)
 
@@ -95,16 +99,32 @@ def sensitivity_table(
     return Table(caption, ["", *map(labelled, SENSITIVE)], rows)
 
 
-def agreement_table(simulated: Statistics, measured: Statistics, judgements: Sequence[Judgement]) -> Table:
+def agreement_table(
+    simulated: Statistics, measured: Statistics, judgements: Sequence[Judgement], caption: str
+) -> Table:
     """Simulation and line test side by side."""
     by_name = {judgement.name: judgement for judgement in judgements}
     rows = []
-    for name in FIGURES:
+    for name in simulated:
         judged = by_name.get(name)
         limits = [f"{judged.value:+.1f} %", f"± {judged.accepted[1]:g} %", distance(judged)] if judged else [""] * 3
         rows.append([labelled(name), number(name, simulated[name]), number(name, measured[name]), *limits])
     header = ["", "simulation", "line test", "difference", "accepted", ""]
-    return Table("Simulation and line test", header, rows)
+    return Table(caption, header, rows)
+
+
+def places_table(both: Mapping[str, tuple[Statistics, Statistics]], names: Sequence[str], caption: str) -> Table:
+    """Figures of a simulation, in brackets those of the line test, and their difference; by place. What both tell."""
+    rows: list[list[str | Cell]] = []
+    told = [name for name in names if any(not math.isnan(a[name] - b[name]) for a, b in both.values())]
+    for place, (mine, theirs) in both.items():
+        row: list[str | Cell] = [place]
+        for name in told:
+            change = 100 * (mine[name] / theirs[name] - 1) if theirs[name] else math.nan
+            beside = f"{number(name, mine[name])} ({number(name, theirs[name])})"
+            row.append(beside if math.isnan(change) else f"{beside} {round(change):+d} %")
+        rows.append(row)
+    return Table(caption, ["", *map(labelled, told)], rows)
 
 
 def frf_table(comparisons: Sequence[LevelComparison]) -> Table:
@@ -170,7 +190,7 @@ def verdict(name: str, judged: Mapping[str, Sequence[Judgement]], unit: str | No
         return f"{name}: none of the {len(counted)} figures with accepted ranges is known"
     unknown = f"; {len(counted) - len(known)} are not known" if len(known) < len(counted) else ""
     outside = [
-        f"{FIGURES[j.name][0]} at {case} by {j.outside:+.3g} {unit or FIGURES[j.name][1]}"
+        f"{described(j.name)[0]} at {case} by {j.outside:+.3g} {unit or described(j.name)[1]}"
         for case, j in known
         if not j.is_inside
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -125,17 +126,19 @@ def _summary(made: chapters.Outcome, catenary: Fmu) -> list[str]:
     """Main figures of an edition's cases side by side, the verdict, and what to know beside it."""
     judged = made.judged
     rows = []
-    for name in (*report.SENSITIVE, "loss_of_contact"):
+    further = dict.fromkeys(name for case in made.edition.cases for name in case.further)
+    for name in (*report.SENSITIVE, "loss_of_contact", *further):
         row = [report.labelled(name)]
-        for case, found in zip(made.edition.cases, made.found):
-            accepted = case.ranges.get(name)
-            row.append(report.number(name, found[name]) + ("  {:g}..{:g}".format(*accepted) if accepted else ""))
+        for each in made.passages:
+            accepted = next((j.accepted for j in each.judged if j.name == name), None)
+            shown = report.number(name, each.found.get(name, math.nan))
+            row.append(shown + ("  {:g}..{:g}".format(*accepted) if accepted else ""))
         rows.append(row)
-    titles = [case.title for case in made.edition.cases]
+    titles = [each.title for each in made.passages]
     lines = report.as_lines(report.Table("", [made.edition.name, *titles], rows))
     if any(judged.values()):
         lines.append(report.verdict(made.edition.name, judged))
-    lines.append(summary.shares(made.edition.name, dict(zip(titles, made.found))))
+    lines.append(summary.shares(made.edition.name, {each.title: each.found for each in made.passages}))
     return [*lines, *made.remarks(catenary), ""]
 
 

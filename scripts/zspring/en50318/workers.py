@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import os
 import signal
@@ -9,7 +10,7 @@ import threading
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..errors import ZSpringError
@@ -21,7 +22,7 @@ from ..line.result import LineResult, write_result
 from ..line.run import run_line
 from ..line.schemes import Coupling
 from ..line.statistics import Statistics, statistics
-from ..line.system import System
+from ..line.system import System, watching
 from .plan import Run
 
 
@@ -31,10 +32,12 @@ class Finished:
 
     key: str  # of the run
     told: tuple[str, ...]  # group, of, label, speed in km/h, section
-    statistics: Statistics
+    statistics: Statistics  # of the leading pantograph, or the only one
     by_span: tuple[Statistics, ...]  # the same of each span of the section
     uplift: float  # N, as chosen for a mean force, or as given
     seconds: float  # of CPU
+    trailing: Statistics | None = None  # of a trailing pantograph
+    trailing_uplift: float = math.nan  # N
 
 
 def run_all(
@@ -76,22 +79,26 @@ def _open(catenary: Path, pantograph: Path) -> None:
 def _execute(run: Run, folder: Path) -> Finished:
     """One run; its series goes to a file that is whole or not there. Raises ZSpringError naming the run."""
     catenary, pantograph = _fmus
+    count = 2 if run.spacing else 1
+    line = {**run.line, **watching(catenary, (*run.points, *run.section.middles))}
+    journey = Journey(run.speed / 3.6, run.start, run.stop, run.step, run.spacing, run.start_up)
     results: list[LineResult] = []
+    found: list[Statistics] = []
 
     def means(uplifts: tuple[float, ...]) -> list[float]:
-        journey = Journey(run.speed / 3.6, run.start, run.stop, run.step, start_up=run.start_up, uplift=uplifts)
-        system = System(catenary, pantograph, run.line, [run.pantograph], journey, Coupling(run.scheme))
+        lifted = replace(journey, uplift=uplifts)
+        system = System(catenary, pantograph, line, [run.pantograph] * count, lifted, Coupling(run.scheme))
         results.append(run_line(system))
-        return [statistics(results[-1].series(0), run.section)["mean_force"]]
+        found[:] = [statistics(results[-1].series(i), run.section) for i in range(count)]
+        return [each["mean_force"] for each in found]
 
     try:
-        uplift: tuple[float, ...] = (run.uplift,)
+        uplift: tuple[float, ...] = (run.uplift,) * count
         if run.mean_force is None:
             means(uplift)
         else:
             uplift = uplifts_for(run.mean_force, uplift, means)
         series = results[-1].series(0)
-        found = statistics(series, run.section)
         by_span = tuple(statistics(series, span) for span in run.section.single_spans())
     except ZSpringError as error:
         raise ZSpringError(f"{run.of}, {run.label}, {run.speed:g} km/h: {error}") from None
@@ -101,4 +108,6 @@ def _execute(run: Run, folder: Path) -> Finished:
         write_result(results[-1], unfinished)
         os.replace(unfinished, path)
     told = run.group, run.of, run.label, repr(run.speed), str(run.section)
-    return Finished(run.key, told, found, by_span, uplift[0], sum(result.elapsed for result in results))
+    seconds = sum(result.elapsed for result in results)
+    trailing = (found[1], uplift[1]) if count > 1 else ()
+    return Finished(run.key, told, found[0], by_span, uplift[0], seconds, *trailing)
