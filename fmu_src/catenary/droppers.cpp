@@ -39,6 +39,19 @@ Range DropperResponse::add(int dropper, double factor, VectorXd& x) const {
   return c.on;
 }
 
+SparseMatrix dropper_stiffness(const Mesh& mesh, const VectorXd& stiffness) {
+  std::vector<Eigen::Triplet<double>> springs;
+  for (size_t j = 0; j < mesh.droppers.size(); ++j) {
+    const int contact = deflection(mesh.droppers[j], Contact), upper = mesh.upper[j];
+    const double k = stiffness[static_cast<Eigen::Index>(j)];
+    springs.emplace_back(contact, contact, k), springs.emplace_back(upper, upper, k);
+    springs.emplace_back(contact, upper, -k), springs.emplace_back(upper, contact, -k);
+  }
+  SparseMatrix k(mesh.dofs(), mesh.dofs());
+  k.setFromTriplets(springs.begin(), springs.end());
+  return k;
+}
+
 constexpr Eigen::Index most_slack = 1024;  // at once; a matrix of 8 MB
 
 Slackening::Slackening(const VectorXd& stiffness)

@@ -46,15 +46,16 @@ class DropperResponse {
 };
 
 inline double stretch(const Mesh& mesh, const VectorXd& u, int dropper) {
-  const int station = mesh.droppers[dropper];
-  return u[deflection(station, Messenger)] - u[deflection(station, Contact)];
+  return u[mesh.upper[dropper]] - u[deflection(mesh.droppers[dropper], Contact)];
 }
 // `force` N pulls both ends of the dropper together: added to internal forces.
 inline void add_tension(const Mesh& mesh, int dropper, double force, VectorXd& internal) {
-  const int station = mesh.droppers[dropper];
-  internal[deflection(station, Messenger)] += force;
-  internal[deflection(station, Contact)] -= force;
+  internal[mesh.upper[dropper]] += force;
+  internal[deflection(mesh.droppers[dropper], Contact)] -= force;
 }
+
+// Of all droppers, as if they pulled and pushed.
+SparseMatrix dropper_stiffness(const Mesh& mesh, const VectorXd& stiffness);
 
 class Slackening {
  public:

@@ -19,12 +19,26 @@ SparseMatrix iteration_matrix(const Line& line, const HhtCoefficients& c) {
          c.weight * c.gamma_h * p.damping.stiffness * line.matrices.wires + c.weight * c.beta_h2 * line.stiffness();
 }
 
+// The droppers' forces where nothing moves and none is slack. Those that hang loose in the static state count there, so
+// that slack changes forces by what it has beyond that state's.
+VectorXd trial_tension(const StaticShape& shape, const DropperResponse& response) {
+  VectorXd tension = shape.tension;
+  for (int j = 0; j < static_cast<int>(tension.size()); ++j)
+    if (shape.slack[j] > 0) {
+      const double pull = shape.stiffness[j] * shape.slack[j];
+      response.relieve(j, -pull, shape.stiffness, tension);
+      tension[j] += pull;
+    }
+  return tension;
+}
+
 }  // namespace
 
 StepFactors::StepFactors(const Line& line, double step)
     : HhtCoefficients(line.p.solver.hht_alpha, step),
       factor(iteration_matrix(line, *this)),
-      droppers(line.mesh, factor, weight * beta_h2) {}
+      droppers(line.mesh, factor, weight * beta_h2),
+      tension(trial_tension(line.shape, droppers)) {}
 
 Hht::Hht(const Line& line)
     : line_(line),
@@ -32,6 +46,7 @@ Hht::Hht(const Line& line)
       mass_(line.matrices.mass),
       mass_factor_(line.matrices.mass),
       slackening_(line.shape.stiffness),
+      no_slack_(VectorXd::Zero(line.shape.slack.size())),
       x_(line.mesh.dofs()),
       trial_(line.shape.stiffness.size()) {
   factors(line.p.solver.step);
@@ -54,12 +69,26 @@ void Hht::trial_forces(const VectorXd& u, const VectorXd& a, double beta_h2) {
     trial_[j] = shape.stiffness[j] * (stretch(line_.mesh, u, j) + beta_h2 * stretch(line_.mesh, a, j));
 }
 
-// What the slack droppers do to x, in units of `factor` over the response's, and where.
-Range Hht::add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const {
+// What slack beyond `usual` does to x, in units of `factor` over the response's, and where.
+Range Hht::add_slack(const DropperResponse& response, double factor, const VectorXd& slack, const VectorXd& usual,
+                     VectorXd& x) const {
   Range on{0, 0};
   for (int j = 0; j < static_cast<int>(slack.size()); ++j)
-    if (slack[j] != 0) on = on.with(response.add(j, -factor * line_.shape.stiffness[j] * slack[j], x));
+    if (const double more = slack[j] - usual[j]; more != 0)
+      on = on.with(response.add(j, -factor * line_.shape.stiffness[j] * more, x));
   return on;
+}
+
+// u' K u of the droppers less twice their elastic energy, J. A dropper is stretched by e, slack by s, and by s0 in the
+// static state: it holds k e^2 / 2 - k s^2 / 2 + k s0^2 / 2 - k s0 e.
+double Hht::loose_energy(const LineState& s) const {
+  double energy = 0;
+  for (int j = 0; j < static_cast<int>(s.slack.size()); ++j) {
+    const double slack = s.slack[j], usual = line_.shape.slack[j];
+    if (slack != 0 || usual != 0)
+      energy += line_.shape.stiffness[j] * (slack * slack - usual * usual + 2 * usual * stretch(line_.mesh, s.u, j));
+  }
+  return energy;
 }
 
 BlockCholesky Hht::static_factor() const {
@@ -83,13 +112,14 @@ std::optional<LineState> Hht::at_rest(const Loads& loads) {
   trial_ += line_.shape.tension;
   if (trial_.size() > 0 && trial_.minCoeff() < 0) {
     const DropperResponse response(line_.mesh, factor, 1);
+    trial_ += trial_tension(line_.shape, response) - line_.shape.tension;
     if (!slackening_.solve(trial_, response, s.slack)) return std::nullopt;
-    add_slack(response, 1, s.slack, s.u);
+    add_slack(response, 1, s.slack, line_.shape.slack, s.u);
   }
   if (!line_.p.solver.energies) return s;
   wires_.multiply(s.u, x_);
   line_.add_springs(1, s.u, x_);
-  s.elastic = 0.5 * (s.u.dot(x_) - s.slack.cwiseAbs2().dot(line_.shape.stiffness));
+  s.elastic = 0.5 * (s.u.dot(x_) - loose_energy(s));
   return s;
 }
 
@@ -100,7 +130,7 @@ Variation Hht::at_rest_variation(const Loads& dloads, const VectorXd& slack) {
     const DropperResponse response(line_.mesh, factor, 1);
     trial_forces(v.d.u, v.d.a, 0);
     slackening_.solve_variation(trial_, response, slack, v.d.slack);
-    add_slack(response, 1, v.d.slack, v.d.u);
+    add_slack(response, 1, v.d.slack, no_slack_, v.d.u);
   }
   return v;
 }
@@ -129,11 +159,11 @@ bool Hht::step(const StepFactors& f, const Loads& l1, const LineState& from, Lin
   l1.add_to(to.a, f.weight);
   f.factor.solve(to.a);
   trial_forces(to.u, to.a, f.beta_h2);
-  trial_ += line_.shape.tension;
+  trial_ += f.tension;
   to.slack = from.slack;
   const std::optional<int> solved = slackening_.solve(trial_, f.droppers, to.slack);
   if (!solved) return false;
-  add_slack(f.droppers, f.weight, to.slack, to.a);
+  add_slack(f.droppers, f.weight, to.slack, line_.shape.slack, to.a);
   const bool slope_known = tells_slope(f.h, from.h);
   if (!slope_known) to.a_slope = from.a_slope;
   if (!sweeps::correct(operators(), f, all(),
@@ -159,9 +189,9 @@ void Hht::account(const StepFactors& f, const Loads& l0, const Loads& l1, const 
   // u' K u from the internal forces, which hold K u, the slack droppers and less the contact forces.
   double strain = p.u_internal - p.u_damping + l1.dot(to.u);
   for (int j = 0; j < static_cast<int>(to.slack.size()); ++j)
-    if (to.slack[j] != 0)
-      strain -= line_.shape.stiffness[j] * to.slack[j] * (stretch(line_.mesh, to.u, j) + to.slack[j]);
-  to.elastic = 0.5 * strain;
+    if (const double more = to.slack[j] - line_.shape.slack[j]; more != 0)
+      strain -= line_.shape.stiffness[j] * more * stretch(line_.mesh, to.u, j);
+  to.elastic = 0.5 * (strain - loose_energy(to));
 }
 
 double Hht::kinetic_change(const LineState& s, const VectorXd& dv) {
@@ -192,7 +222,7 @@ void Hht::step_variation(const StepFactors& f, const Loads& dl1, const LineState
   if ((to.slack.array() > 0).any()) {
     trial_forces(d.u, d.a, f.beta_h2);
     slackening_.solve_variation(trial_, f.droppers, to.slack, d.slack);
-    on = on.with(add_slack(f.droppers, f.weight, d.slack, d.a));
+    on = on.with(add_slack(f.droppers, f.weight, d.slack, no_slack_, d.a));
   } else {
     d.slack.setZero();
   }

@@ -19,6 +19,7 @@ struct StepFactors : HhtCoefficients {
 
   BlockCholesky factor;      // of M + (1 + hht_alpha) (gamma h C + beta h^2 K)
   DropperResponse droppers;  // its compliance is that of u at the end of a step to a dropper's force there
+  VectorXd tension;          // N, of the droppers, from which their trial forces are counted
 };
 
 class Hht {
@@ -47,17 +48,20 @@ class Hht {
  private:
   BlockCholesky static_factor() const;
   LineState at_rest_if_taut(const BlockCholesky& factor, const Loads& loads) const;  // no dropper slack
-  Range add_slack(const DropperResponse& response, double factor, const VectorXd& slack, VectorXd& x) const;
+  Range add_slack(const DropperResponse& response, double factor, const VectorXd& slack, const VectorXd& usual,
+                  VectorXd& x) const;
   sweeps::Operators operators() const {
     return {wires_.rows(), mass_.rows(), line_.p.damping.stiffness, line_.p.damping.mass};
   }
   Range all() const { return {0, line_.mesh.stations()}; }
   void trial_forces(const VectorXd& u, const VectorXd& a, double beta_h2);
+  double loose_energy(const LineState& s) const;
 
   const Line& line_;
   const WireOperator wires_, mass_;
   BlockCholesky mass_factor_;
   Slackening slackening_;
+  const VectorXd no_slack_;
   std::unique_ptr<StepFactors> factors_[4];  // the last used first
   VectorXd x_, trial_;                       // workspace
 };

@@ -1,17 +1,20 @@
 #include "line.hpp"
 
+#include <utility>
+
 #include "droppers.hpp"
 
 namespace zspring::catenary {
 
-Line::Line(const Parameters& parameters)
-    : p(parameters), mesh(p), matrices(p, mesh), shape(static_shape(p, mesh, matrices)) {
+Line::Line(const Parameters& parameters, LineTable built)
+    : p(parameters),
+      table(std::move(built)),
+      mesh(table, p.mesh.element),
+      matrices(p, table, mesh),
+      shape(static_shape(p, table, mesh, matrices)) {
   for (size_t j = 0; j < mesh.droppers.size(); ++j) {
-    const double half = 0.5 * p.dropper.mass * shape.length[static_cast<Eigen::Index>(j)];
-    for (Wire wire : {Contact, Messenger}) {
-      const int dof = deflection(mesh.droppers[j], wire);
-      matrices.mass.coeffRef(dof, dof) += half;
-    }
+    const double half = 0.5 * table.droppers[j].mass * shape.length[static_cast<Eigen::Index>(j)];
+    for (int dof : {deflection(mesh.droppers[j], Contact), mesh.upper[j]}) matrices.mass.coeffRef(dof, dof) += half;
   }
 }
 
@@ -59,15 +62,9 @@ void Line::add_springs(double factor, const VectorXd& u, VectorXd& forces) const
 SparseMatrix Line::stiffness() const {
   std::vector<Eigen::Triplet<double>> springs;
   for (const Spring& s : matrices.supports) springs.emplace_back(s.dof, s.dof, s.stiffness);
-  for (size_t j = 0; j < mesh.droppers.size(); ++j) {
-    const int contact = deflection(mesh.droppers[j], Contact), messenger = deflection(mesh.droppers[j], Messenger);
-    const double k = shape.stiffness[static_cast<Eigen::Index>(j)];
-    springs.emplace_back(contact, contact, k), springs.emplace_back(messenger, messenger, k);
-    springs.emplace_back(contact, messenger, -k), springs.emplace_back(messenger, contact, -k);
-  }
   SparseMatrix k(mesh.dofs(), mesh.dofs());
   k.setFromTriplets(springs.begin(), springs.end());
-  return matrices.wires + k;
+  return matrices.wires + k + dropper_stiffness(mesh, shape.stiffness);
 }
 
 }  // namespace zspring::catenary

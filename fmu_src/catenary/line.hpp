@@ -11,7 +11,7 @@ namespace zspring::catenary {
 //
 //   M u'' + C u' + K u = forces,   C = damping_mass M + damping_stiffness K_wires
 struct Line {
-  explicit Line(const Parameters& parameters);  // refers to them
+  Line(const Parameters& parameters, LineTable built);  // refers to the parameters
 
   // Forces of supports, steady arms and droppers that pull, times `factor`.
   void add_springs(double factor, const VectorXd& u, VectorXd& forces) const;
@@ -20,6 +20,7 @@ struct Line {
   Eigen::Vector4d heights(const VectorXd& u, const Place& at) const { return at.of(u) + at.of(shape.height); }
 
   const Parameters& p;
+  LineTable table;
   Mesh mesh;
   Matrices matrices;
   StaticShape shape;

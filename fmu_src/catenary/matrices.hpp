@@ -1,4 +1,8 @@
-// Finite-element matrices of the two wires: tensioned Euler-Bernoulli beams with consistent mass.
+// Finite-element matrices of the wires: tensioned Euler-Bernoulli beams with consistent mass; strings along a stitch.
+//
+// The mass of a string's element is the mean of the consistent and the lumped one: waves along it then run at their
+// speed but for terms of fourth order in the element's length (Goudreau, Taylor: Computer Methods in Applied Mechanics
+// and Engineering 2, 1973).
 #pragma once
 
 #include "mesh.hpp"
@@ -14,12 +18,13 @@ struct Spring {
 // The anchors hold the deflection of both wires at both ends: their rows are those of a free unit mass that
 // nothing loads.
 struct Matrices {
-  explicit Matrices(const Parameters& p, const Mesh& mesh);
+  // Throws Refusal where a stitch wire takes all of the messenger's tension.
+  Matrices(const Parameters& p, const LineTable& line, const Mesh& mesh);
 
   SparseMatrix wires;            // stiffness of the wires alone
-  SparseMatrix mass;             // with clamps and steady arms; droppers are added with their lengths
+  SparseMatrix mass;             // with clamps, point masses and steady arms; droppers are added with their lengths
   std::vector<Spring> supports;  // messenger supports and steady arms
-  VectorXd weight;               // N and N m, of the wires alone, downward positive
+  VectorXd weight;               // N and N m, of wires, point masses and stitch clamps, downward positive
 };
 
 bool is_anchor(const Mesh& mesh, int dof);

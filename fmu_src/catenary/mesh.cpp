@@ -3,45 +3,36 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/failure.hpp"
-
 namespace zspring::catenary {
-namespace {
 
-constexpr double least_distance = 0.001;  // m, of droppers and supports
-
-void check_droppers(const Parameters& p) {
-  double last = 0;
-  for (int i = 0; i < p.dropper.count; ++i) {
-    const double x = p.dropper.position[i];
-    const double low = last + least_distance, high = p.line.span - least_distance;
-    if (x < low || x > high)
-      refuse(
-          "dropper.position[%d] = %.10g m: must be at least %.10g m and at most %.10g m, after the dropper before "
-          "it "
-          "and within line.span = %.10g m",
-          i + 1, x, low, high, p.line.span);
-    last = x;
+Mesh::Mesh(const LineTable& line, double longest_element) {
+  std::vector<double> places;
+  for (const Support& s : line.supports) places.push_back(s.x);
+  for (const Dropper& d : line.droppers) places.push_back(d.x);
+  for (const StitchWire& s : line.stitches) places.insert(places.end(), {s.begin, s.end});
+  for (const PointMass& m : line.masses) places.push_back(m.x);
+  std::sort(places.begin(), places.end());
+  x.push_back(0);
+  for (double end : places) {
+    const double begin = x.back();
+    if (end == begin) continue;
+    const int elements = std::max(1, static_cast<int>(std::ceil((end - begin) / longest_element - 1e-9)));
+    for (int i = 1; i < elements; ++i) x.push_back(begin + (end - begin) * i / elements);
+    x.push_back(end);
+  }
+  is_stitched.assign(x.size(), 0);
+  for (const StitchWire& s : line.stitches)
+    std::fill(is_stitched.begin() + station_at(s.begin) + 1, is_stitched.begin() + station_at(s.end), 1);
+  for (const Support& s : line.supports) supports.push_back(station_at(s.x));
+  for (const Dropper& d : line.droppers) {
+    const int station = station_at(d.x);
+    droppers.push_back(station);
+    upper.push_back(d.on_stitch != 0 ? stitch_deflection(station) : deflection(station, Messenger));
   }
 }
 
-}  // namespace
-
-Mesh::Mesh(const Parameters& p) {
-  check_droppers(p);
-  const auto mesh_to = [&](double end) {
-    const double begin = x.back();
-    const int elements = std::max(1, static_cast<int>(std::ceil((end - begin) / p.mesh.element - 1e-9)));
-    for (int i = 1; i < elements; ++i) x.push_back(begin + (end - begin) * i / elements);
-    x.push_back(end);
-    return stations() - 1;
-  };
-  x.push_back(0);
-  supports.push_back(0);
-  for (int span = 0; span < p.line.spans; ++span) {
-    for (int i = 0; i < p.dropper.count; ++i) droppers.push_back(mesh_to(span * p.line.span + p.dropper.position[i]));
-    supports.push_back(mesh_to((span + 1) * p.line.span));
-  }
+int Mesh::station_at(double place) const {
+  return static_cast<int>(std::lower_bound(x.begin(), x.end(), place) - x.begin());
 }
 
 Place Mesh::at(double position) const {

@@ -1,21 +1,22 @@
-// Stations along the line: places where both wires have a node, at supports, droppers and between.
+// Stations along the line: places where the wires have a node, at supports, droppers, clamps, masses and between.
 //
-// Each station has four degrees of freedom: deflection and slope of contact wire and messenger. Numbered along the
-// line, so every matrix has a narrow band and its Cholesky factor no fill outside of it.
+// Each station has four degrees of freedom: deflection and slope of contact wire and messenger. Between the clamps of a
+// stitch wire messenger and stitch wire are strings without bending stiffness, and its deflection takes the place of
+// the messenger's slope. Numbered along the line, so every matrix has a narrow band and its Cholesky factor no fill
+// outside of it.
 #pragma once
 
 #include <cmath>
 #include <vector>
 
 #include "common/eigen.hpp"
-#include "parameters.hpp"
+#include "line_table.hpp"
 
 namespace zspring::catenary {
 
-enum Wire { Contact, Messenger };
-
 inline int deflection(int station, Wire wire) { return 4 * station + 2 * wire; }
 inline int slope(int station, Wire wire) { return deflection(station, wire) + 1; }
+inline int stitch_deflection(int station) { return slope(station, Messenger); }
 
 // Cubic Hermite functions of a beam element at a place: deflection there is value . (w, w' at both its ends).
 struct Place {
@@ -39,8 +40,7 @@ struct Place {
 
 class Mesh {
  public:
-  // Throws Refusal where droppers are not in order within the span.
-  explicit Mesh(const Parameters& p);
+  Mesh(const LineTable& line, double longest_element);
 
   int stations() const { return static_cast<int>(x.size()); }
   int dofs() const { return 4 * stations(); }
@@ -50,9 +50,13 @@ class Mesh {
   // All zero outside the line.
   Place at(double position) const;
 
-  std::vector<double> x;      // m, of the stations
-  std::vector<int> droppers;  // their stations, along the line
-  std::vector<int> supports;  // the stations at span boundaries, the anchors at both ends included
+  int station_at(double place) const;  // of one of the line's places
+
+  std::vector<double> x;          // m, of the stations
+  std::vector<int> droppers;      // their stations, along the line
+  std::vector<int> upper;         // degrees of freedom at the droppers' upper ends
+  std::vector<int> supports;      // the stations at span boundaries, the anchors at both ends included
+  std::vector<char> is_stitched;  // of the stations, those strictly between the clamps of a stitch wire
 };
 
 }  // namespace zspring::catenary

@@ -11,11 +11,15 @@ Discard no_slack(double time) { return {time, text("no set of slack droppers fit
 
 }  // namespace
 
-Simulation::Simulation(const Parameters& parameters, const Inputs& inputs)
-    : line_(parameters), hht_(line_), foresight_(line_, hht_), varied_(Variation::of_nothing(line_)) {
+Simulation::Simulation(const Parameters& parameters, const Inputs& inputs, const LineTable* table)
+    : line_(parameters, table ? *table : LineTable::of(parameters)),
+      hht_(line_),
+      foresight_(line_, hht_),
+      varied_(Variation::of_nothing(line_)) {
   const Parameters& p = line_.p;
   calculated_.line.length = line_.mesh.length();
-  calculated_.dropper.static_force_min = line_.shape.tension.size() > 0 ? line_.shape.tension.minCoeff() : 0;
+  calculated_.dropper.static_force_min =
+      line_.shape.tension.size() > 0 ? std::max(line_.shape.tension.minCoeff(), 0.0) : 0;
   Passage placed[pantographs], expected[pantographs];
   bool as_expected = true;
   for (int i = 0; i < pantographs; ++i) {

@@ -23,7 +23,8 @@ ZSPRING_MEMBERS(SimulationState, line, known, guessed, map, foreseen, was_forese
 
 class Simulation final : public Model<Simulation, Inputs, SimulationState, Held> {
  public:
-  Simulation(const Parameters& parameters, const Inputs& inputs);
+  // table: of the line; null: like spans, from the parameters.
+  Simulation(const Parameters& parameters, const Inputs& inputs, const LineTable* table = nullptr);
 
   // derivatives.cpp. Of velocities that of HHT, of first order.
   Outputs output_rates() override;

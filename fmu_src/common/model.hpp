@@ -1,6 +1,7 @@
 // What the FMI layer needs of a model, and what models have in common.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "numbers.hpp"
@@ -9,9 +10,17 @@
 
 namespace zspring {
 
+// A model's Table is a file of the FMU's resources that a copy of it may have: it stands in for some of the parameters.
+// This is the one of models that know none.
+struct NoTable {
+  static constexpr char name[] = "";  // of the file, NAME.table
+  static bool replaces(const char* /*parameter*/) { return false; }
+  static NoTable of(const char* /*bytes*/, std::size_t /*size*/) { return {}; }
+};
+
 // A simulation, communication step by communication step, from the initial state that its constructor makes of
-// (const Parameters&, const Inputs&); that throws Refusal for what makes no model. It keeps no copy of the
-// parameters: of those referred to, the tunable ones may change between steps.
+// (const Parameters&, const Inputs&, const Table*), null for none; that throws Refusal for what makes no model. It
+// keeps no copy of the parameters: of those referred to, the tunable ones may change between steps.
 //
 // State is all that changes; Held, with `inputs` and `length`, what holds during one communication step.
 // Simulation is the model itself, a final class, so that its functions are called directly.

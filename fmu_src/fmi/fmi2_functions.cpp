@@ -93,7 +93,7 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const 
   });
 }
 
-fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String /*resources*/,
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions* functions, fmi2Boolean /*visible*/, fmi2Boolean debug) {
   if (!functions) return nullptr;
   try {
@@ -104,7 +104,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
       return nullptr;
     };
     try {
-      instance->begin_as(Origin::of(guid));
+      instance->begin_as(Origin::of(guid), resources);
     } catch (const Refusal& e) {
       return fail(text("%s", e.what()));
     }
@@ -196,7 +196,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
   return guarded(c, any_phase, __func__, [&](Instance& i) {
     need(bytes, 1, "serializedState"), need(state, 1, "FMUstate");
     Numbers numbers = deserialize(bytes, size);
-    Instance::check_state(numbers);
+    i.check_state(numbers);
     *state = i.states.keep(std::move(numbers), *state);
   });
 }

@@ -12,6 +12,11 @@ Phase phase_of(double number) {
   refuse("FMU state: %g is no state of an FMU", number);
 }
 
+// The table's checksum as two numbers that doubles hold; 0 without one.
+double half_of_checksum(const Origin& origin, int half) {
+  return static_cast<double>(origin.table.value_or(0) >> 32 * half & 0xffffffffu);
+}
+
 }  // namespace
 
 // Returns whether the parameters that make the model are those from before.
@@ -33,7 +38,7 @@ bool Instance::visit_values(Visitor&& f) {
 }
 
 Numbers Instance::snapshot() {
-  Numbers numbers{static_cast<double>(phase)};
+  Numbers numbers{static_cast<double>(phase), half_of_checksum(origin_, 0), half_of_checksum(origin_, 1)};
   Writer write{numbers};
   visit_values(write);
   // A simulation that parameters or inputs have outdated is not part of the state.
@@ -44,8 +49,10 @@ Numbers Instance::snapshot() {
 
 void Instance::restore(const Numbers& numbers) {
   Reader read{numbers.data(), numbers.data() + numbers.size()};
-  double stored_phase;
-  read(stored_phase);
+  double stored_phase, of_table[2];
+  read(stored_phase), read(of_table[0]), read(of_table[1]);
+  if (of_table[0] != half_of_checksum(origin_, 0) || of_table[1] != half_of_checksum(origin_, 1))
+    refuse("FMU state: is that of an FMU with another %s.table, or none", Table::name);
   phase = phase_of(stored_phase);
   const bool same_model = visit_values(read);
   bool has_simulation;
@@ -57,10 +64,11 @@ void Instance::restore(const Numbers& numbers) {
   if (read.in != read.end) refuse("FMU state: goes on after its last value");
 }
 
-void Instance::check_state(const Numbers& numbers) {
+void Instance::check_state(const Numbers& numbers) const {
   for (double x : numbers)
     if (!std::isfinite(x)) refuse("FMU state: holds a value that is not finite");
   Instance trial({}, "", false);
+  trial.origin_ = origin_, trial.table_ = table_;
   trial.restore(numbers);
   if (!trial.simulation_ && trial.phase & (StepComplete | StepFailed | Terminated))
     refuse("FMU state: lacks its simulation");

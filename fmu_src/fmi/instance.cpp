@@ -4,7 +4,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string>
 #include <utility>
+
+#include "common/checksum.hpp"
+#include "resources.hpp"
 
 namespace zspring::fmi {
 namespace {
@@ -55,8 +59,15 @@ void Instance::reset() {
   forget_discard();
 }
 
-void Instance::begin_as(Origin origin) {
+void Instance::begin_as(Origin origin, const char* resources) {
   origin_ = std::move(origin);
+  if (origin_.table) {
+    const std::string file = std::string(Table::name) + ".table";
+    const std::string bytes = read_resource(resources, file.c_str());
+    if (checksum(bytes.data(), bytes.size()) != *origin_.table)
+      refuse("%s in the resources: is damaged, or not the one that this FMU was made with", file.c_str());
+    table_ = std::make_shared<const Table>(Table::of(bytes.data(), bytes.size()));
+  }
   reset();
 }
 
@@ -73,7 +84,7 @@ void Instance::terminate() {
 }
 
 Simulation& Instance::simulation() {
-  if (!simulation_) simulation_.emplace(parameters_, inputs_);
+  if (!simulation_) simulation_.emplace(parameters_, inputs_, table_.get());
   return *simulation_;
 }
 
@@ -97,6 +108,8 @@ void Instance::check_settable(unsigned reference, Type type, double x) const {
   if (v.is_parameter() && !v.tunable && !(phase & before_start))
     refuse("%s: is a fixed parameter and can be set before the end of initialization only", v.name);
   check_value(v, x);
+  if (v.is_parameter() && table_ && Table::replaces(v.name) && x != v.get(parameters_))
+    refuse("%s: cannot be set, as this FMU has %s.table in its place", described(v, x).chars, Table::name);
 }
 
 void Instance::set(unsigned reference, double x) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "log.hpp"
@@ -26,7 +27,7 @@ class Instance {
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
-  void begin_as(Origin origin);
+  void begin_as(Origin origin, const char* resources);  // resources: their location as a host gives it
   void setup_experiment(double start, bool has_stop, double stop);
   void enter_initialization() { phase = Initialization; }
   void exit_initialization() { simulation(), phase = StepComplete; }
@@ -53,7 +54,7 @@ class Instance {
   Numbers snapshot();
   void restore(const Numbers& numbers);
   // Throws where numbers from outside the process could not be restored.
-  static void check_state(const Numbers& numbers);
+  void check_state(const Numbers& numbers) const;
 
   Phase phase;
   Log log;
@@ -69,6 +70,7 @@ class Instance {
   bool visit_values(Visitor&& f);
 
   Origin origin_;
+  std::shared_ptr<const Table> table_;  // null for none
   Parameters parameters_;
   Inputs inputs_;
   double stop_;  // s

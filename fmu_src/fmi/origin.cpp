@@ -16,16 +16,26 @@ const char* behind(const char* beginning, const char* text) {
   return std::strncmp(text, beginning, n) == 0 ? text + n : nullptr;
 }
 
+// "=BITS", 16 hexadecimal digits; goes on behind it, unless it is none.
+bool read_bits(const char*& at, std::uint64_t& bits) {
+  if (at[0] != '=' || std::strspn(at + 1, "0123456789abcdef") != 16) return false;
+  char* end;
+  bits = std::strtoull(at + 1, &end, 16);
+  at = end;
+  return true;
+}
+
 // " REFERENCE=BITS"; goes on behind it, unless it is none.
 bool read_start(const char*& at, unsigned& reference, double& value) {
   if (at[0] != ' ' || at[1] < '0' || at[1] > '9') return false;
   char* end;
   const unsigned long long number = std::strtoull(at + 1, &end, 10);
-  if (*end != '=' || number >= variable_count || std::strspn(end + 1, "0123456789abcdef") != 16) return false;
-  const std::uint64_t bits = std::strtoull(end + 1, &end, 16);
+  const char* behind_number = end;
+  std::uint64_t bits;
+  if (number >= variable_count || !read_bits(behind_number, bits)) return false;
   reference = static_cast<unsigned>(number);
   std::memcpy(&value, &bits, sizeof value);
-  at = end;
+  at = behind_number;
   return true;
 }
 
@@ -38,6 +48,10 @@ Origin Origin::of(const char* guid) {
     if (const char* rest = behind(" reals", at)) {
       origin.reals = true;
       at = rest;
+    }
+    if (const char* rest = *Table::name && *at == ' ' ? behind(Table::name, at + 1) : nullptr) {
+      std::uint64_t checksum;
+      if (read_bits(rest, checksum)) origin.table = checksum, at = rest;
     }
     unsigned reference;
     double value;

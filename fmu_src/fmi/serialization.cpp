@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "common/checksum.hpp"
 #include "instance.hpp"
 #include "variables.inc"
 
@@ -19,20 +20,12 @@ struct Header {
 };
 static_assert(sizeof(ZSPRING_GUID) <= sizeof(Header::guid) && sizeof(Header) == 64);
 
-// FNV-1a, to notice damage, not to resist an attacker.
-std::uint64_t checksum(const Numbers& numbers) {
-  std::uint64_t hash = 14695981039346656037u;
-  const auto* byte = reinterpret_cast<const unsigned char*>(numbers.data());
-  for (std::size_t i = 0; i < numbers.size() * sizeof(double); ++i) hash = (hash ^ byte[i]) * 1099511628211u;
-  return hash;
-}
-
 Header header_of(const Numbers& numbers) {
   Header h{};
   std::memcpy(h.magic, magic, sizeof magic);
   std::memcpy(h.guid, ZSPRING_GUID, sizeof(ZSPRING_GUID));
   h.count = numbers.size();
-  h.checksum = checksum(numbers);
+  h.checksum = checksum(numbers.data(), numbers.size() * sizeof(double));
   return h;
 }
 

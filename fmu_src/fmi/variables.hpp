@@ -4,7 +4,7 @@
 //
 // The FMI layer is compiled once for each model, with the folder of the model's model.hpp and variables.inc on the
 // include path. In namespace zspring::fmi that provides the structs Parameters, Inputs (of Signals) and
-// Calculated, and Simulation, a Model of these (common/model.hpp).
+// Calculated, and Simulation, a Model of these, with its Table (common/model.hpp).
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,8 @@ Text no_wire(const Inputs& u) {
 
 }  // namespace
 
-Simulation::Simulation(const Parameters& parameters, const Inputs& inputs) : mechanics_(parameters), hht_(mechanics_) {
+Simulation::Simulation(const Parameters& parameters, const Inputs& inputs, const NoTable*)
+    : mechanics_(parameters), hht_(mechanics_) {
   SimulationState state;
   state.mechanical = at_rest(inputs);
   state.motion.position = state.mechanical.boundary.position;

@@ -9,7 +9,7 @@ namespace zspring {
 class Simulation final : public Model<Simulation, Inputs, SimulationState, Held> {
  public:
   // Starts at rest in the static state under the inputs' values.
-  Simulation(const Parameters& parameters, const Inputs& inputs);
+  Simulation(const Parameters& parameters, const Inputs& inputs, const NoTable* = nullptr);
 
   // derivatives.cpp. Of what has no rate in the state (forces and friction moments that are reactions) difference
   // quotients over the last internal step.

@@ -8,4 +8,5 @@ using catenary::Calculated;
 using catenary::Inputs;
 using catenary::Parameters;
 using catenary::Simulation;
+using Table = catenary::LineTable;
 }  // namespace zspring::fmi

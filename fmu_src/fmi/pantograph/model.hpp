@@ -2,3 +2,7 @@
 #pragma once
 
 #include "pantograph/simulation.hpp"
+
+namespace zspring::fmi {
+using Table = NoTable;
+}  // namespace zspring::fmi
