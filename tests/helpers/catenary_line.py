@@ -29,9 +29,12 @@ def hermite(s: np.ndarray, length: np.ndarray, derivative: int = 0) -> np.ndarra
 
 
 class Wire:
-    """One tensioned beam between x[0] and x[-1], w = 0 at both ends; degrees of freedom (w, w') per node."""
+    """One tensioned beam between x[0] and x[-1], w = 0 at both ends if `held`; degrees of freedom (w, w') per node.
 
-    def __init__(self, x: np.ndarray, mass: float, tension: float, bending: float):
+    tension     N, or of each element
+    """
+
+    def __init__(self, x: np.ndarray, mass: float, tension: float | np.ndarray, bending: float, *, held: bool = True):
         self.x, self.n = x, 2 * len(x)
         length = np.diff(x)
         stiffness = np.zeros((len(length), 4, 4))
@@ -41,7 +44,7 @@ class Wire:
                 n = hermite(s, length, order)
                 matrix += (factor * weight * length)[:, None, None] * n[:, :, None] * n[:, None, :]
         self.dofs = 2 * np.arange(len(length))[:, None] + np.arange(4)
-        self.free = np.setdiff1d(np.arange(self.n), (0, self.n - 2))
+        self.free = np.setdiff1d(np.arange(self.n), (0, self.n - 2) if held else ())
         self.mass, self.beam = self._assemble(inertia), self._assemble(stiffness)
         unit = np.sum([w * hermite(s, length) for s, w in zip(0.5 * (1 + GAUSS[0]), 0.5 * GAUSS[1])], axis=0)
         self.uniform = np.bincount(self.dofs.ravel(), (unit * length[:, None]).ravel(), self.n)[self.free]
@@ -72,7 +75,7 @@ class Banded:
     """Cholesky factor of a sparse symmetric positive definite matrix with a small bandwidth."""
 
     def __init__(self, matrix: csr_matrix):
-        entries = matrix.tocoo()
+        entries = coo_matrix(matrix)
         width = int(np.max(entries.col - entries.row))
         band = np.zeros((width + 1, matrix.shape[0]))
         upper = entries.col >= entries.row
@@ -208,10 +211,15 @@ class Line:
         free = solve[0](load)
         y = [s(j) if j.shape[1] else j for s, j in zip(solve, self.J)]
         q_matrix = np.diag(self.flexibility) + sum(j.T @ v for j, v in zip(self.J, y))
-        # Tensions beyond the static state move the wires: f = T0 + df.
-        q = self.flexibility * self.T0 - self.J[0].T @ free + (q_matrix - np.diag(self.flexibility)) @ self.T0
+        # Tensions beyond the static state move the wires: f = pull + df.
+        q = self.flexibility * self.T0 - self.J[0].T @ free + (q_matrix - np.diag(self.flexibility)) @ self.pull
         f, _ = complementarity(q_matrix, q, np.ones(len(q), bool))
-        return free + y[0] @ (f - self.T0), y[1] @ (f - self.T0), f
+        return free + y[0] @ (f - self.pull), y[1] @ (f - self.pull), f
+
+    @property
+    def pull(self) -> np.ndarray:
+        """Tensions in the static state (N); T0 is below 0 by stiffness times gap where a dropper hangs loose in it."""
+        return np.maximum(self.T0, 0.0)
 
 
 def parameters_of(line: Line) -> dict[str, float]:

@@ -113,7 +113,7 @@ class Solver:
     ):
         self.line, self.step, self.alpha, self.pantographs = line, step, alpha, pantographs
         self.points, self.supports = line.wires[0].at(points), line.wires[0].at(line.supports)
-        self.wires = [Body(m, c, k, j, -j @ line.T0, Banded) for m, c, k, j in zip(line.M, line.C, line.K, line.J)]
+        self.wires = [Body(m, c, k, j, -j @ line.pull, Banded) for m, c, k, j in zip(line.M, line.C, line.K, line.J)]
         none = len(line.droppers)
         self.masses = []
         for p in pantographs:
@@ -185,7 +185,7 @@ class Solver:
         line, (contact, messenger) = self.line, self.wires
         elongation = -(contact.J.T @ contact.u + messenger.J.T @ messenger.u)
         pull = np.maximum(0.0, line.T0 + elongation / line.flexibility)
-        droppers = 0.5 * line.flexibility * (pull**2 - line.T0**2) - line.T0 * elongation
+        droppers = 0.5 * line.flexibility * (pull**2 - line.pull**2) - line.pull * elongation
         kinetic = sum(0.5 * w.v @ (w.M @ w.v) for w in self.wires)
         elastic = sum(0.5 * w.u @ (w.K @ w.u) for w in self.wires) + droppers.sum()
         return (

@@ -7,6 +7,7 @@ Error.
 from __future__ import annotations
 
 import ctypes
+import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -48,6 +49,7 @@ class Fmu:
 
     path: Path
     folder: Path
+    told: str = ""  # to the library by the GUID of a copy
 
     @cached_property
     def description(self) -> ModelDescription:
@@ -72,10 +74,20 @@ class Fmu:
         outputs = (v for v in self.description.modelVariables if v.causality == "output" and v.type == "Real")
         return [v.name for v in outputs if v.variability != "discrete"]
 
+    def with_line(self, table: bytes, folder: Path) -> Fmu:
+        """A copy in `folder` whose resources hold this table of a line."""
+        shutil.copytree(self.folder, folder)
+        (folder / "resources").mkdir(exist_ok=True)
+        (folder / "resources" / "line.table").write_bytes(table)
+        digest = 14695981039346656037  # FNV-1a
+        for byte in table:
+            digest = (digest ^ byte) * 1099511628211 % 2**64
+        return Fmu(self.path, folder, f" line={digest:016x}")
+
     def slave(self, name: str = "instance") -> FMU2Slave:
         """A binding that has loaded the library but has no instance yet."""
         return FMU2Slave(
-            guid=self.description.guid,
+            guid=self.description.guid + self.told,
             unzipDirectory=str(self.folder),
             instanceName=name,
             modelIdentifier=self.description.coSimulation.modelIdentifier,

@@ -1,0 +1,207 @@
+"""Lines from a table: like spans as by parameters, closed forms, and an independent model on lines of every kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from any_line import AnyLine
+from catenary_line import COMPLETE, parameters_of
+from catenary_reference import Solver
+from harness import Fmu, Instance
+from zspring import line_table
+from zspring.line_table import LineTable
+
+G = 9.81
+WIRES = {
+    "contact_wire.mass": 1.35,
+    "contact_wire.tension": 22e3,
+    "contact_wire.EI": 195.0,
+    "messenger.mass": 1.08,
+    "messenger.tension": 16e3,
+    "messenger.EI": 131.7,
+    "damping.mass": 0.0125,
+    "damping.stiffness": 1e-4,
+    "gravity": G,
+    "mesh.element": 1.0,
+}
+HEIGHTS = [f"point.height[{i}]" for i in range(1, 9)]
+UPLIFTS = [f"point.uplift[{i}]" for i in range(1, 9)]
+
+
+def table(supports, droppers=(), stitches=(), masses=(), profile=(), ends=(0.0, 0.0)) -> LineTable:
+    """Rows as in the file; a dropper: (x, upper, height) and what of the others is not usual, by name."""
+    usual = {"stiffness": 1e5, "mass": 0.117, "clamp_contact": 0.165, "clamp_upper": 0.195}
+    hangers = np.zeros(len(droppers), line_table.DROPPER)
+    for row, (x, upper, height, *others) in zip(hangers, droppers):
+        for name, value in ({"x": x, "upper": upper, "height": height} | usual | (others[0] if others else {})).items():
+            row[name] = value
+    kinds = line_table.STITCH, line_table.POINT_MASS, line_table.PROFILE
+    rest = (np.array(list(rows), kind) for rows, kind in zip((stitches, masses, profile), kinds))
+    return LineTable(np.array(list(supports), line_table.SUPPORT), ends, hangers, *rest)
+
+
+def supported(*x: float, messenger: Callable[[float], float] = lambda x: 1.3, arm=(0.3, 300.0)) -> list[tuple]:
+    inner = [(place, messenger(place), 5e5, *arm) for place in x[1:-1]]
+    return [(x[0], messenger(x[0]), 0, 0, 0), *inner, (x[-1], messenger(x[-1]), 0, 0, 0)]
+
+
+UNLIKE = table(
+    supported(0, 48, 113, 154, 215, messenger=lambda x: 1.3 + 0.001 * x + 0.05 * (x == 113)),
+    [
+        (x, 0, 0.001 * x - 0.0005 * min(x - a, b - x))
+        for a, b, n in ((0, 48, 5), (48, 113, 8), (113, 154, 3), (154, 215, 7))
+        for x in np.linspace(a + 3.7, b - 4.1, n)
+    ],
+    masses=[(60.0, 0, 6.5), (113, 0, 2.0), (131.3, 1, 9.0), (172.0, 0, 3.0)],
+    ends=(0.0, 0.215),
+)
+STITCHED = table(
+    supported(0, 55, 120, 180, 235, messenger=lambda x: 1.6),
+    [
+        (x, float(any(abs(x - s) < 9 for s in (55, 120, 180))), 0.0)
+        for s, e in ((0, 55), (55, 120), (120, 180), (180, 235))
+        for x in (s + 2.6, *np.linspace(s + 11, e - 11, 5), e - 2.6)
+    ],
+    stitches=[(s - 9.0, s + 9.0, 2800.0, 0.31, 0.4) for s in (55, 120, 180)],
+)
+_WRONG = np.random.default_rng(3).normal(0, 0.004, 24)
+IRREGULAR = replace(
+    UNLIKE,
+    droppers=np.array(
+        [
+            (*row.tolist()[:8], 0, wrong + (10.0 if i == 9 else 0))
+            for i, (row, wrong) in enumerate(zip(UNLIKE.droppers, _WRONG))
+        ],
+        line_table.DROPPER,
+    ),
+    profile=np.array(
+        [(x, 0.002 * np.sin(x / 3), 0.002 / 3 * np.cos(x / 3)) for x in np.arange(20, 200, 1.7)], line_table.PROFILE
+    ),
+)
+LINES = {"unlike spans": UNLIKE, "stitched": STITCHED, "irregular": IRREGULAR}
+
+
+@cache
+def independent(name: str) -> AnyLine:
+    return AnyLine(LINES[name], WIRES)
+
+
+@pytest.fixture
+def line_of(fmu_catenary: Fmu, tmp_path) -> Iterator[Callable[..., Instance]]:
+    """Makes instances of a table: line_of(table, parameters)."""
+    made = []
+
+    def make(line: LineTable, parameters=None, **options) -> Instance:
+        copy = fmu_catenary.with_line(line.content, tmp_path / f"line {line.digest} {len(made)}")
+        made.append(Instance(copy, WIRES | (parameters or {}), **options))
+        return made[-1]
+
+    yield make
+    for instance in made:
+        instance.close()
+
+
+def loads(forces: dict[float, float], points=()) -> dict[str, float]:
+    """At most two forces (N) by position (m), and up to eight points."""
+    placed = {f"point.position[{i}]": x for i, x in enumerate(points, start=1)}
+    for i, (x, force) in enumerate(forces.items(), start=1):
+        placed |= {f"pantograph[{i}].force": force, f"pantograph[{i}].start": x}
+    return placed
+
+
+def test_like_spans_by_a_table_are_those_by_parameters(catenary, line_of):
+    """To the last bit, in motion, with droppers that slacken."""
+    span, n = COMPLETE.span, COMPLETE.spans
+    sags, places = COMPLETE.dropper_sag, COMPLETE.dropper_position
+    like = table(
+        supported(*(span * np.arange(n + 1)), messenger=lambda x: COMPLETE.encumbrance),
+        [(i * span + x, 0, -sag, {"EA": COMPLETE.dropper_EA}) for i in range(n) for x, sag in zip(places, sags)],
+    )
+    run = loads({0.8 * span: 200.0}, np.linspace(10, 150, 8)) | {"pantograph[1].speed": 60.0}
+    outputs = [
+        *UPLIFTS,
+        *HEIGHTS,
+        "pantograph[1].wire_height",
+        "droppers.force_min",
+        "energy.elastic",
+        "energy.kinetic",
+    ]
+    targets = {"pantograph[1].force": lambda t: 250 + 200 * np.sin(30 * t)}
+    by_parameters, by_table = (
+        model.run(2e-3, 400, outputs, targets=targets)
+        for model in (catenary(parameters_of(COMPLETE) | run), line_of(like, run))
+    )
+    np.testing.assert_array_equal(by_table, by_parameters)
+    assert np.any(by_table[:, outputs.index("droppers.force_min")] == 0)
+
+
+@pytest.mark.parametrize("name", LINES)
+@pytest.mark.parametrize("force", [0.0, 120.0, 700.0])
+def test_any_line_has_the_statics_of_an_independent_one(line_of, name, force):
+    line, reference = LINES[name], independent(name)
+    points = np.array([5.0, 52.0, 77.3, 100.0, 131.0, 150.5, 178.0, 199.0])
+    for x in (70.0, 113.0, 119.0, 170.0):
+        forces = {x: force, x - 44.5: 0.5 * force}
+        found = line_of(line, loads(forces, points))
+        u, _, tension = reference.equilibrium(list(forces), list(forces.values()))
+        at = reference.wires[0].at
+        close = {"rel": 1e-6, "abs": 1e-8}
+        assert found.reals(HEIGHTS) == pytest.approx(at(points) @ (u + reference.shape), **close)
+        assert found.reals(UPLIFTS) == pytest.approx(at(points) @ u, **close)
+        assert found["droppers.force_max"] == pytest.approx(tension.max(), rel=1e-6)
+        assert found["droppers.force_min"] == pytest.approx(tension.min(), rel=1e-5, abs=1e-9)
+        assert found["droppers.slack"] == np.sum(tension == 0)
+    assert (found["droppers.slack"] > 0) == (force == 700 or name == "irregular")
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_any_line_moves_as_an_independent_one(line_of, name):
+    """Under two forces that run along it and slacken droppers."""
+    line, reference = LINES[name], independent(name)
+    step, begin, speed = 2e-3, np.array([60.0, 25.0]), np.array([70.0, 55.0])
+    points = np.array([30.0, 48.0, 61.0, 80.5, 113.0, 120.0, 140.0, 170.0])
+
+    def force(t: float) -> np.ndarray:
+        return np.array([250 + 200 * np.sin(40 * t), 150 - 150 * np.cos(25 * t)])
+
+    expected = Solver(reference, step, -0.1, points=points).run(500, lambda t: begin + speed * t, force)
+    given = loads(dict(zip(begin, force(0.0))), points) | {f"pantograph[{i + 1}].speed": v for i, v in enumerate(speed)}
+    p = line_of(line, given | {"solver.step": step, "solver.alpha": -0.1})
+    outputs = ["pantograph[1].wire_height", "pantograph[2].wire_height", *UPLIFTS, "energy.kinetic", "energy.elastic"]
+    found = p.run(
+        step, 500, outputs, targets={f"pantograph[{i}].force": lambda t, i=i: force(t)[i - 1] for i in (1, 2)}
+    )
+    for column, value in zip(found.T, np.column_stack([expected.wire, expected.points, expected.energy])[1:].T):
+        np.testing.assert_allclose(column, value, atol=1e-7 * np.abs(value).max())
+    assert np.sum(expected.tension == 0, axis=1).max() > 1
+
+
+def test_a_stitched_messenger_without_bending_stiffness_is_that_of_beams_to_half_a_percent(line_of):
+    """Elasticity with a fine mesh, against beams with the messenger's bending stiffness along the stitch as well."""
+    wires = WIRES | {"mesh.element": 0.5}
+    reference, places = AnyLine(STITCHED, wires, strings=False), [113.0, 117.4, 120.0, 129.0, 150.0]
+    found = [line_of(STITCHED, wires | loads({x: 100.0}))["pantograph[1].uplift"] for x in places]
+    uplift = [(reference.wires[0].at(x) @ reference.equilibrium([x], [100.0])[0])[0] for x in places]
+    assert found == pytest.approx(uplift, rel=5e-3)
+
+
+def test_a_dropper_on_a_stitch_wire_pulls_that_and_the_messenger(line_of):
+    """Closed form: a contact wire that hardly has a tension, on one stiff dropper in the middle of a stitch wire.
+
+    Under F the stitch wire of tension Ts rises by F L / (4 Ts) over its clamps, L apart, and each clamp, where the
+    messenger has T outside and stays level between them, by F / 2 times its distance from the anchor over T.
+    """
+    length, begin, end, T, Ts, F = 40.0, 14.0, 26.0, 16e3, 2800.0, 1.0
+    line = table(
+        supported(0, length, messenger=lambda x: 1.5),
+        [(20.0, 1.0, 0.0, {"stiffness": 1e9, "mass": 0.0, "clamp_contact": 30.0})],
+        stitches=[(begin, end, Ts, 0.31, 0.0)],
+    )
+    wires = {"contact_wire.tension": 1.0, "contact_wire.EI": 0.0, "contact_wire.mass": 0.01, "messenger.EI": 0.0}
+    found = line_of(line, wires | loads({20.0: F}))["pantograph[1].uplift"]
+    assert found == pytest.approx(F * (end - begin) / (4 * Ts) + F / 2 * begin / T, rel=2e-3)
