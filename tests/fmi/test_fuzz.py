@@ -6,9 +6,13 @@ where a compiler has them. Longer, and with other sanitizers and libFuzzer: test
 
 from __future__ import annotations
 
+import re
+import subprocess
+
 import pytest
 
 from fuzzing import CORPUS, fuzz
+from probe import probe_folder
 from sanitizers import check_memory_and_ub, sanitizing_compiler
 
 COMPILER = sanitizing_compiler()
@@ -31,6 +35,13 @@ def test_random_sequences_of_calls_break_no_rule(model, sequences):
 @pytest.mark.parametrize("model", ["ZSpringPantograph", "Catenary"])
 def test_eight_threads_with_their_own_instances_break_no_rule(model):
     assert fuzz(model, "--random", 100_000, 20, 8)["calls"] > 100 * 160
+
+
+def test_a_damaged_table_of_a_line_is_refused_or_moves():
+    done = subprocess.run([probe_folder() / "fuzz_line_table", "1", "4000"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    refused, moved = map(int, re.findall(r"\d+", done.stdout))
+    assert refused + moved == 4000 and min(refused, moved) > 400
 
 
 @pytest.mark.skipif(not COMPILER, reason="needs g++ or clang++ with sanitizers, on Linux")

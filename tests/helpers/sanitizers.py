@@ -62,3 +62,5 @@ def check_memory_and_ub(model: str, sequences: int, compiler: str) -> None:
     program = sanitized("memory", MEMORY_AND_UB, compiler) / f"fuzz_{model}"
     run(program, *CORPUS)
     run(program, "--random", 1, sequences)
+    if model == "Catenary":
+        run(program.with_name("fuzz_line_table"), 1, 3 * sequences)
