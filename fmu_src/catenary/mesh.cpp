@@ -22,7 +22,7 @@ Mesh::Mesh(const LineTable& line, double longest_element) {
   }
   is_stitched.assign(x.size(), 0);
   for (const StitchWire& s : line.stitches)
-    std::fill(is_stitched.begin() + station_at(s.begin) + 1, is_stitched.begin() + station_at(s.end), 1);
+    std::fill(is_stitched.begin() + station_at(s.begin), is_stitched.begin() + station_at(s.end), 1);
   for (const Support& s : line.supports) supports.push_back(station_at(s.x));
   for (const Dropper& d : line.droppers) {
     const int station = station_at(d.x);
@@ -45,10 +45,20 @@ Place Mesh::at(double position) const {
   place.value << r * r * (1 + 2 * s), l * s * r * r, s * s * (1 + 2 * r), -l * s * s * r;
   place.slope << -6 * s * r / l, r * (1 - 3 * s), 6 * s * r / l, s * (1 - 3 * r);
   place.curvature << (12 * s - 6) / (l * l), (6 * s - 4) / l, (6 - 12 * s) / (l * l), (6 * s - 2) / l;
-  // The anchors do not move, whatever acts on them: there the wire answers with its slope only.
-  if (place.station == 0) place.value[0] = place.slope[0] = place.curvature[0] = 0;
-  if (place.station + 2 == stations()) place.value[2] = place.slope[2] = place.curvature[2] = 0;
+  place.share = s;
+  place.begin_is_held = place.station == 0;
+  place.end_is_held = place.station + 2 == stations();
   return place;
+}
+
+double Mesh::upper_deflection(const VectorXd& all, const Place& at, bool of_stitch) const {
+  const int i = deflection(at.station, Messenger);
+  if (at.value.isZero(0)) return 0;  // outside the line
+  if (!is_stitched[at.station]) return at.value.dot(Eigen::Vector4d(all[i], all[i + 1], all[i + 4], all[i + 5]));
+  const auto end = [&](int station) {
+    return all[of_stitch && has_stitch(station) ? stitch_deflection(station) : deflection(station, Messenger)];
+  };
+  return (1 - at.share) * end(at.station) + at.share * end(at.station + 1);
 }
 
 }  // namespace zspring::catenary

@@ -9,18 +9,21 @@
 #include <cmath>
 #include <vector>
 
-#include "common/eigen.hpp"
 #include "line_table.hpp"
+#include "sparse.hpp"
 
 namespace zspring::catenary {
 
 inline int deflection(int station, Wire wire) { return 4 * station + 2 * wire; }
 inline int slope(int station, Wire wire) { return deflection(station, wire) + 1; }
+// Between the clamps of a stitch wire.
 inline int stitch_deflection(int station) { return slope(station, Messenger); }
 
 // Cubic Hermite functions of a beam element at a place: deflection there is value . (w, w' at both its ends).
 struct Place {
-  int station = 0;  // at the element's begin
+  int station = 0;                                  // at the element's begin
+  double share = 0;                                 // of the element, from there to the place
+  bool begin_is_held = false, end_is_held = false;  // by an anchor
   Eigen::Vector4d value = Eigen::Vector4d::Zero();
   Eigen::Vector4d slope = Eigen::Vector4d::Zero();      // 1/m, d value / dx
   Eigen::Vector4d curvature = Eigen::Vector4d::Zero();  // 1/m2
@@ -31,10 +34,14 @@ struct Place {
     const int i = deflection(station, Contact);
     return {all[i], all[i + 1], all[i + 4], all[i + 5]};
   }
+  // Of a load on the contact wire. The anchors do not move, whatever acts on them: there the wire answers with its
+  // slope.
   template <class Vector>
   void add(const Eigen::Vector4d& load, Vector& all) const {
     const int i = deflection(station, Contact);
-    all[i] += load[0], all[i + 1] += load[1], all[i + 4] += load[2], all[i + 5] += load[3];
+    if (!begin_is_held) all[i] += load[0];
+    if (!end_is_held) all[i + 4] += load[2];
+    all[i + 1] += load[1], all[i + 5] += load[3];
   }
 };
 
@@ -51,12 +58,16 @@ class Mesh {
   Place at(double position) const;
 
   int station_at(double place) const;  // of one of the line's places
+  // Whether the station is strictly between the clamps of a stitch wire.
+  bool has_stitch(int station) const { return station > 0 && is_stitched[station - 1] && is_stitched[station]; }
+  // Deflection of the messenger or, where there is one, the stitch wire out of a vector of all.
+  double upper_deflection(const VectorXd& all, const Place& at, bool of_stitch) const;
 
   std::vector<double> x;          // m, of the stations
   std::vector<int> droppers;      // their stations, along the line
   std::vector<int> upper;         // degrees of freedom at the droppers' upper ends
   std::vector<int> supports;      // the stations at span boundaries, the anchors at both ends included
-  std::vector<char> is_stitched;  // of the stations, those strictly between the clamps of a stitch wire
+  std::vector<char> is_stitched;  // of the elements after each station but the last
 };
 
 }  // namespace zspring::catenary

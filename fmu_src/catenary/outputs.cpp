@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "simulation.hpp"
 
 namespace zspring::catenary {
@@ -22,6 +24,8 @@ struct View {
   double dropper_force(int j) const {
     return pulls(j) ? line.shape.tension[j] + line.shape.stiffness[j] * stretch(line.mesh, s.u, j) : 0;
   }
+  double force(int j) const { return j < 0 ? 0 : dropper_force(j); }
+  double force_change(const LineState& d, int j) const { return j < 0 ? 0 : dropper_force_change(d, j); }
   double dropper_force_change(const LineState& d, int j) const {
     return pulls(j) ? line.shape.stiffness[j] * stretch(line.mesh, d.u, j) : 0;
   }
@@ -57,6 +61,27 @@ double velocity_change(const View& x, const Place& at, double speed, const LineS
          moved.speed * at.slope.dot(height) + speed * moved.position * at.curvature.dot(height);
 }
 
+// Of the wires above a point, over the datum or, of a variation, by how much it varies.
+double upper(const View& x, const VectorXd& all, int point, bool of_stitch) {
+  return x.line.mesh.upper_deflection(all, x.point[point], of_stitch);
+}
+double upper_height(const View& x, int point, bool of_stitch) {
+  return upper(x, x.s.u, point, of_stitch) + upper(x, x.line.shape.height, point, of_stitch);
+}
+
+// Index of the dropper that is nearest to a point; -1 without droppers.
+int nearest_dropper(const View& x, int point) {
+  const std::vector<int>& stations = x.line.mesh.droppers;
+  const std::vector<double>& places = x.line.mesh.x;
+  const double at = x.line.p.point.position[point];
+  const auto after = std::lower_bound(stations.begin(), stations.end(), at,
+                                      [&](int station, double place) { return places[station] < place; });
+  const int j = static_cast<int>(after - stations.begin());
+  if (j == 0) return stations.empty() ? -1 : 0;
+  return after == stations.end() || at - places[after[-1]] <= places[*after] - at ? j - 1 : j;
+}
+double place_of_dropper(const View& x, int j) { return j < 0 ? 0 : x.line.mesh.x[x.line.mesh.droppers[j]]; }
+
 double at_support(const View& x, const VectorXd& u, int i) {
   const std::vector<int>& supports = x.line.mesh.supports;
   return i < static_cast<int>(supports.size()) ? u[deflection(supports[i], Contact)] : 0;
@@ -80,6 +105,10 @@ OUTPUT(support_dot_uplift, at_support(x, x.s.u, i), at_support(x, d.u, i))
 OUTPUT(point_dot_height, height(x, x.point[i]), height_change(x, x.point[i], d, stays))
 OUTPUT(point_dot_uplift, uplift(x, x.point[i]), uplift_change(x, x.point[i], d, stays))
 OUTPUT(point_dot_velocity, velocity(x, x.point[i], 0), velocity_change(x, x.point[i], 0, d, stays))
+OUTPUT(point_dot_messenger_height, upper_height(x, i, false), upper(x, d.u, i, false))
+OUTPUT(point_dot_stitch_height, upper_height(x, i, true), upper(x, d.u, i, true))
+DISCRETE(point_dot_dropper_position, place_of_dropper(x, nearest_dropper(x, i)))
+OUTPUT(point_dot_dropper_force, x.force(nearest_dropper(x, i)), x.force_change(d, nearest_dropper(x, i)))
 DISCRETE(droppers_dot_slack, x.slack)
 OUTPUT(droppers_dot_force_min, x.dropper_force(x.weakest), x.dropper_force_change(d, x.weakest))
 OUTPUT(droppers_dot_force_max, x.dropper_force(x.strongest), x.dropper_force_change(d, x.strongest))

@@ -89,7 +89,7 @@ StaticShape static_shape(const Parameters& p, const LineTable& line, const Mesh&
       shape.height[deflection(station, Contact)] += contact.at(mesh.x[station]);
       shape.height[slope(station, Contact)] += contact.rise;
       shape.height[deflection(station, Messenger)] += above;
-      shape.height[slope(station, Messenger)] += mesh.is_stitched[station] ? above : messenger.rise;
+      shape.height[slope(station, Messenger)] += mesh.has_stitch(station) ? above : messenger.rise;
     }
     for (int j = 0; j < n; ++j) {
       shape.length[j] = stretch(mesh, shape.height, j);

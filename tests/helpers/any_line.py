@@ -127,6 +127,7 @@ class AnyLine(Line):
             return lambda x: begin + (end - begin) * np.asarray(x) / self.length
 
         level, above = line_between(*t.ends), line_between(t.supports["messenger"][0], t.supports["messenger"][-1])
+        self.above = above
         gap = above(drop["x"]) - level(drop["x"])
         solve_c, solve_u = Banded(contact.beam), dense(upper.beam)
         heights = drop["height"] - level(drop["x"])

@@ -148,15 +148,47 @@ def test_any_line_has_the_statics_of_an_independent_one(line_of, name, force):
     for x in (70.0, 113.0, 119.0, 170.0):
         forces = {x: force, x - 44.5: 0.5 * force}
         found = line_of(line, loads(forces, points))
-        u, _, tension = reference.equilibrium(list(forces), list(forces.values()))
+        u, lifted, tension = reference.equilibrium(list(forces), list(forces.values()))
         at = reference.wires[0].at
         close = {"rel": 1e-6, "abs": 1e-8}
         assert found.reals(HEIGHTS) == pytest.approx(at(points) @ (u + reference.shape), **close)
         assert found.reals(UPLIFTS) == pytest.approx(at(points) @ u, **close)
+        upper = reference.wires[1].at(points) @ (lifted + reference.messenger_shape) + reference.above(points)
+        assert found.reals([f"point.messenger_height[{i}]" for i in range(1, 9)]) == pytest.approx(upper, **close)
+        nearest = [np.argmin(np.abs(line.droppers["x"] - p)) for p in points]
+        places = found.reals([f"point.dropper_position[{i}]" for i in range(1, 9)])
+        np.testing.assert_array_equal(places, line.droppers["x"][nearest])
+        forces_there = found.reals([f"point.dropper_force[{i}]" for i in range(1, 9)])
+        assert forces_there == pytest.approx(tension[nearest], rel=1e-6, abs=1e-9)
         assert found["droppers.force_max"] == pytest.approx(tension.max(), rel=1e-6)
         assert found["droppers.force_min"] == pytest.approx(tension.min(), rel=1e-5, abs=1e-9)
         assert found["droppers.slack"] == np.sum(tension == 0)
     assert (found["droppers.slack"] > 0) == (force == 700 or name == "irregular")
+
+
+def test_points_move_between_steps_and_tell_of_all_wires(line_of):
+    """The wires' whole shape at one time, eight places at once; a stitch wire under the messenger, the ends held."""
+    p, reference = line_of(STITCHED), independent("stitched")
+    places = np.linspace(0, reference.length, 160)
+    outputs = [f"point.{name}[{i}]" for i in range(1, 9) for name in ("height", "messenger_height", "stitch_height")]
+    shape = []
+    for eight in places.reshape(-1, 8):
+        p.set({f"point.position[{i}]": x for i, x in enumerate(eight, start=1)})
+        shape.append(p.reals(outputs).reshape(8, 3))
+    contact, messenger, stitch = np.concatenate(shape).T
+    upper = reference.wires[1]
+    inside = np.any([(places > s["begin"]) & (places < s["end"]) for s in STITCHED.stitches], axis=0)
+    expected = upper.at(places[inside], "stitch") @ reference.messenger_shape + reference.above(places[inside])
+    assert stitch[inside] == pytest.approx(expected, rel=1e-9)
+    np.testing.assert_array_equal(stitch[~inside], messenger[~inside])
+    assert np.all(stitch[inside] < messenger[inside]) and np.all(contact < stitch)
+    assert (contact[0], contact[-1], messenger[0]) == (0.0, 0.0, 1.6)
+
+
+def test_a_line_that_rises_ends_where_it_is_held(line_of):
+    p = line_of(UNLIKE, loads({}, [0.0, 215.0]))
+    assert p.reals(HEIGHTS[:2]) == pytest.approx([0.0, 0.215], abs=1e-12)
+    assert p.reals(["point.messenger_height[1]", "point.messenger_height[2]"]) == pytest.approx([1.3, 1.515], rel=1e-9)
 
 
 @pytest.mark.parametrize("name", LINES)
