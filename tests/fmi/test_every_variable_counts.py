@@ -34,7 +34,7 @@ CHANGED = {
     "k3": 100.0,
 }
 UNITS = {
-    r".*\.(z|x|uplift|wire_height|free_height|height|length)|support\.uplift": "m",
+    r".*\.(z|x|uplift|(wire_|free_|messenger_|stitch_)?height|length)|support\.uplift|point\.dropper_position": "m",
     r".*\.compliance(_previous)?": "m/N",
     r".*(\.v|velocity)": "m/s",
     r".*\.a": "m/s2",
