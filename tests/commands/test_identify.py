@@ -283,18 +283,24 @@ def test_an_interrupted_search_goes_on_to_the_same_result(measurement, tmp_path)
     assert broken == whole
 
 
+def linear_fit(folder: Path, more: str = "") -> Path:
+    """Settings of a fit of m1 and k2 to exact points of the linear model."""
+    values, linear = linear_pantograph("DSA-380")
+    points = {(0.25, float(f)): linear.receptance(f) for f in np.arange(1.0, 15.0)}
+    write_measurement(folder / "bench.csv", points)
+    free = "".join(f"{key} = {{ start = {values[key]}, min = 1, max = 40000 }}\n" for key in ("m1", "k2"))
+    text = 'model = "linear"\n[[measurement]]\nfile = "bench.csv"\n[search]\nsamples = 4\nstarts = 1\n[free]\n'
+    (folder / "fit.toml").write_text(text + free + more)
+    return folder / "fit.toml"
+
+
 @pytest.mark.parametrize("fits", [1, 2, 3])
 def test_ctrl_c_in_the_last_jacobian_writes_nothing_and_keeps_the_search(tmp_path, monkeypatch, fits):
     """Answers are NaN from Ctrl-C on, so that standard errors from such a Jacobian would mean nothing.
 
     There are three fits: from the start values, from the best of the search, and that of all points.
     """
-    values, linear = linear_pantograph("DSA-380")
-    points = {(0.25, float(f)): linear.receptance(f) for f in np.arange(1.0, 15.0)}
-    write_measurement(tmp_path / "bench.csv", points)
-    free = "".join(f"{key} = {{ start = {values[key]}, min = 1, max = 40000 }}\n" for key in ("m1", "k2"))
-    text = 'model = "linear"\n[[measurement]]\nfile = "bench.csv"\n[search]\nsamples = 4\nstarts = 1\n[free]\n'
-    (tmp_path / "fit.toml").write_text(text + free)
+    path, out = linear_fit(tmp_path), tmp_path / "out"
     calls = []
 
     def fit_until_ctrl_c(*arguments):
@@ -303,7 +309,6 @@ def test_ctrl_c_in_the_last_jacobian_writes_nothing_and_keeps_the_search(tmp_pat
             os.kill(os.getpid(), signal.SIGINT)
         return calls[-1]
 
-    path, out = tmp_path / "fit.toml", tmp_path / "out"
     with Fmu() as model:
         settings = read_settings(path, model)
         with monkeypatch.context() as patched:
@@ -313,6 +318,24 @@ def test_ctrl_c_in_the_last_jacobian_writes_nothing_and_keeps_the_search(tmp_pat
         assert sorted(path.name for path in out.iterdir()) == ["identify.log", "search.partial.csv"]
         run.identify(model, settings, path, out, "png", JOBS)
     assert (out / "fitted.ssv").exists() and not (out / "search.partial.csv").exists()
+
+
+def test_ctrl_c_after_the_fit_keeps_what_was_fitted(tmp_path, monkeypatch):
+    path, out = linear_fit(tmp_path, "[uncertainty]\nprofiles = true\n"), tmp_path / "out"
+
+    def interrupted(*arguments):
+        os.kill(os.getpid(), signal.SIGINT)
+        return 0.0, 1.0
+
+    with Fmu() as model:
+        settings = read_settings(path, model)
+        with monkeypatch.context() as patched:
+            patched.setattr(stages, "profile_interval", interrupted)
+            with pytest.raises(Interrupted, match=r"; written so far: \S+fitted.ssv, \S+fit.csv$"):
+                run.identify(model, settings, path, out, "png", JOBS)
+        kept = read_set(out / "fitted.ssv", model)
+        run.identify(model, settings, path, out, "png", JOBS)
+        assert read_set(out / "fitted.ssv", model) == kept
 
 
 def test_a_candidate_that_cannot_be_simulated_costs_a_penalty_and_no_more(fmu):

@@ -305,6 +305,11 @@ def test_settings_give_the_parameters_of_every_x(tmp_path):
         ("[fixed]", "[search]\npoints = 0\n[fixed]", "search: points = 0: must be a whole number of at least 1"),
         ("[tied]", "[static]\nfile = 1\n[tied]", "static: file = 1: must be a text"),
         ('model = "zspring"', 'model = "zspring"\nsearch = 3', "search = 3: must be a table"),
+        (
+            "[free]",
+            '[[measurement]]\nfile = "./bench.csv"\n[free]',
+            "measurement: bench.csv is named twice: its points",
+        ),
         ('model = "zspring"', 'model = "zspring"\nband = [0, nan]', "band = .0, nan.: must be .*frequency in Hz"),
     ],
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from ..bench.static_test import read_static_test
 from ..errors import ZSpringError
 from ..figures import save
 from ..fmu import Fmu
-from ..interrupt import stop_on_interrupt
+from ..interrupt import Interrupted, stop_on_interrupt
 from ..records import keep_others
 from ..tables import read_rows
 from ..variables import parse, with_unit
@@ -76,12 +77,19 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
             if settings.search.samples:
                 x = stages.search(problem)
             result = stages.fit(problem, x, "least squares")
-            drawn = stages.drawn(problem, model, result)
-            profiles = stages.profiles(problem, result) if settings.uncertainty.profiles else None
-            posterior = stages.posterior(problem, result) if settings.uncertainty.draws else None
-            chosen = [Candidate(name_of(fmu, {**defaults, **settings.fixed}), problem, result)]
-            if settings.compare_models:
-                chosen += stages.others(problem, result, defaults, model)
+            paths = [
+                write_fitted(fmu, problem, result, defaults, folder / "fitted.ssv"),
+                write_points(fmu, problem, result, folder / "fit.csv"),
+            ]
+            with _told(paths):
+                drawn = stages.drawn(problem, model, result)
+                profiles = stages.profiles(problem, result) if settings.uncertainty.profiles else None
+                posterior = stages.posterior(problem, result) if settings.uncertainty.draws else None
+                if posterior:
+                    paths.append(write_posterior(fmu, problem, posterior, folder / "draws.csv"))
+                chosen = [Candidate(name_of(fmu, {**defaults, **settings.fixed}), problem, result)]
+                if settings.compare_models:
+                    chosen += stages.others(problem, result, defaults, model)
             for name in PARTIAL:
                 (folder / name).unlink(missing_ok=True)
         finally:
@@ -99,10 +107,6 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
         }
         log.say("\n\n".join("\n".join(lines) for lines in tables.values() if lines))
         log.say(f"fitted in {time.perf_counter() - begin:.1f} s")
-    paths = [
-        write_fitted(fmu, problem, result, defaults, folder / "fitted.ssv"),
-        write_points(fmu, problem, result, folder / "fit.csv"),
-    ]
     if settings.model == "zspring":
         force = with_unit(fmu.variables["static_force"], settings.parameters(result.x)["static_force"])
         print(
@@ -118,7 +122,6 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
         figures["harmonics"] = harmonics
     if posterior:
         units = {name: fmu.variables[name].unit or "1" for name in settings.free}
-        paths.append(write_posterior(fmu, problem, posterior, folder / "draws.csv"))
         figures["posterior"] = posterior_figure(problem, result, posterior, units, f"{title}: posterior")
     for name, figure in figures.items():
         paths.append(folder / f"{name}.{suffix}")
@@ -126,6 +129,15 @@ def identify(fmu: Fmu, settings: Settings, path: Path, folder: Path, suffix: str
     about = write_fit_report(fmu, problem, result, title, tables, figures, folder / "report.html")
     print("written:", *paths, about, folder / "identify.log")
     return result
+
+
+@contextmanager
+def _told(paths: Sequence[Path]) -> Iterator[None]:
+    """What is written already is told where the rest is interrupted."""
+    try:
+        yield
+    except Interrupted as stop:
+        raise Interrupted(f"{stop}; written so far: {', '.join(map(str, paths))}") from None
 
 
 def _keep_others(path: Path, head: Mapping[str, str]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import sys
 from collections.abc import Mapping
@@ -186,6 +187,10 @@ class Settings(Table):
                 raise ValueError("harmonics: the linear model has none")
             if self.compare_models:
                 raise ValueError("compare_models: needs model zspring, whose amplitudes tell the models apart")
+        for one, other in itertools.combinations(self.measurement, 2):
+            sets = [set(each.data_sets) for each in (one, other)]
+            if one.path.resolve() == other.path.resolve() and not (all(sets) and sets[0].isdisjoint(sets[1])):
+                raise ValueError(f"measurement: {other.path.name} is named twice: its points would count twice")
         for name, tie in self.tied.items():
             if name in self.free:
                 raise ValueError(f"tied.{name}: is free, too")
