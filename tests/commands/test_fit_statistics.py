@@ -29,6 +29,7 @@ LINE = np.column_stack([np.ones(5), T])
 FREQUENCY = np.array([1.0, 2.0, 4.0])
 MASS = Free(start=5, min=0, max=10)
 MEASURED = np.array([2e-4 - 1e-4j, 1e-4 - 3e-4j, -5e-5 - 2e-4j])
+ERROR = np.array([[0.01, 0.02], [0.05, 0.01], [0.002, 0.004]])  # of magnitude and phase
 
 
 class Exponential:
@@ -48,10 +49,11 @@ class Exponential:
 
 
 def problem_of(free=("m1", "m2"), static: StaticTest | None = None, **fields) -> Problem:
-    """With parameters from 0 to 10 of these names, or others by their names."""
+    """With parameters from 0 to 10 of these names, or others by their names; with standard errors where these weigh."""
     free = free if isinstance(free, dict) else dict.fromkeys(free, MASS)
     settings = Settings.model_construct(model="zspring", free=free, **fields)  # unchecked, as it has no file
-    curves = [Curve("1 m/s2", FREQUENCY, np.ones(3), MEASURED)]
+    errors = ERROR if fields.get("weights") == "errors" else None
+    curves = [Curve("1 m/s2", FREQUENCY, np.ones(3), MEASURED, errors)]
     return Problem(settings, Exponential(), curves, static)
 
 
@@ -140,7 +142,6 @@ def test_variances_go_by_kind_of_residual():
     problem = problem_of(static=StaticTest(force, force, force), weights="errors")
     static = Static.model_construct(path=Path("static.csv"), weight=1.0)
     problem.settings = problem.settings.model_copy(update={"static": static})
-    problem.curves = [replace(problem.curves[0], error=ERROR)]
     answer = Answer([MEASURED * np.exp(np.array([0.01, -0.05, 0.002]))], 1.1 * force)
     residuals = problem.residuals(answer)
     found = problem.variances(answer, 2)
@@ -161,13 +162,9 @@ def test_logarithmic_residuals_are_the_errors_of_magnitude_and_phase():
     )
 
 
-ERROR = np.array([[0.01, 0.02], [0.05, 0.01], [0.002, 0.004]])
-
-
 def test_weighted_residuals_count_in_standard_errors_of_each_point():
     """The model's own scatter, 2e-4, joins them: of a point that is known to 0.2 % it takes 0.5 %."""
     problem = problem_of(weights="errors")
-    problem.curves = [replace(problem.curves[0], error=ERROR)]
     off = np.array([0.01 + 0.02j, -0.05 + 0.01j, 0.004 - 0.004j])
     residuals = problem.residuals(Answer([MEASURED * np.exp(off)], None))
     np.testing.assert_allclose(residuals, [1, -1, 2, 1, 1, -1], rtol=0.006)
@@ -179,7 +176,7 @@ def test_harmonics_count_over_the_first_one_or_in_standard_errors(weights):
     """Of orders 3 and 5 alone. The first one is displacement over receptance."""
     peak = np.arange(18.0).reshape(3, 6)
     problem = problem_of(harmonics=(3, 5), weights=weights)
-    curve = replace(problem.curves[0], error=ERROR, harmonics=Harmonics(peak, np.full((3, 6), 0.5)))
+    curve = replace(problem.curves[0], harmonics=Harmonics(peak, np.full((3, 6), 0.5)))
     problem.curves = [curve]
     computed = peak + np.array([9.0, 1.0, 9.0, -2.0, 9.0, 9.0])
     residuals = problem.residuals(Answer([MEASURED], None, None, [computed]))[6:]

@@ -15,6 +15,7 @@ from zspring.identify.settings import Free, Settings, Static, Uncertainty
 from zspring.identify.targets import settled_targets
 
 HEAD = "frequency [Hz],amplitude [m/s2],real [m/N],imaginary [m/N]"
+ERRORS = "magnitude_error [%],phase_error [deg]"
 ROWS = ["2,1,3e-4,-4e-4", "4,1,0,-2e-4", "6,2,-1e-4,0"]
 
 
@@ -65,6 +66,23 @@ def test_the_fixture_turns_errors_of_magnitude_and_phase_into_one_another():
     np.testing.assert_allclose(found[0], [free.real.std(), free.imag.std()], rtol=0.03)
 
 
+def test_what_neighbours_share_goes_with_its_points(tmp_path):
+    """Common errors go with their points through choices of points, and through the fixture's turn."""
+    cells = ("2,1.5,0.004", "1,1,0.003", "0.5,1,0")
+    first, second = read_curves(Source(table(tmp_path / "a.csv", f"{ERRORS},common_error [1]", *cells)))
+    np.testing.assert_allclose(first.common, [0.004, 0.003])
+    np.testing.assert_allclose(second.common, [0.0])
+    np.testing.assert_allclose(first.at(np.array([1])).common, [0.003])
+    (percent, _) = read_curves(Source(table(tmp_path / "b.csv", f"{ERRORS},common_error [%]", *cells)))
+    np.testing.assert_allclose(percent.common, [4e-5, 3e-5])
+    assert read_curves(Source(table(tmp_path / "c.csv", ERRORS, "2,1", "1,1", "0.5,1")))[0].common is None
+    mass = 2.0
+    taken = Source(Path(), fixture_mass=mass).corrected(first)
+    shift = 1e-5 * np.exp(0.3j)
+    moved = Source(Path(), fixture_mass=mass).corrected(replace(first, H=first.H * np.exp(shift)))
+    np.testing.assert_allclose(np.abs(np.log(moved.H / taken.H)) / 1e-5, taken.common / first.common, rtol=1e-4)
+
+
 def test_harmonics_are_those_that_have_a_column(tmp_path):
     path = table(tmp_path / "a.csv", "harmonic_3 [N],harmonic_5 [kN],harmonic_3_error [N]", "1,2,3", "4,5,6", "7,8,9")
     first, second = read_curves(Source(path))
@@ -85,6 +103,11 @@ def test_harmonics_are_those_that_have_a_column(tmp_path):
         ("magnitude_error [%],phase_error [deg]", "0,1", "line 2: magnitude_error = 0: must be positive"),
         ("magnitude_error [%],phase_error [deg]", "1,", "line 2: phase_error = '': must be a finite number"),
         ("harmonic_3 [m]", "1", r"column 'harmonic_3': unit \[m\]: must be one of N"),
+        (f"{ERRORS},common_error [1]", "1,1,0.02", r"line 2: common_error = 2 %: .* part of .* so 0 to 1 %"),
+        (f"{ERRORS},common_error [1]", "9,1,0.02", r"line 2: common_error = 2 %: .* part of .* so 0 to 1.74533 %"),
+        (f"{ERRORS},common_error [%]", "1,1,-0.1", r"line 2: common_error = -0.1 %: must be a part of magnitude_error"),
+        ("common_error [1]", "0.01", r"line 2: common_error = 1 %: must be a part of magnitude_error and phase_error$"),
+        (f"{ERRORS},common_error [m/N]", "1,1,1e-6", r"column 'common_error': unit \[m/N\]"),
     ],
 )
 def test_what_tells_no_error_is_refused(tmp_path, columns, cells, complaint):

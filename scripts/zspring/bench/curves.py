@@ -13,6 +13,10 @@ from ..errors import ZSpringError
 
 SENSES = {"specimen": 1, "contact": -1}  # a force along the displacement; one that presses the head down
 AT_END = 1e-3  # relative distance of a frequency from the end of a band that it still belongs to
+# Distance of frequencies and of levels, in their logarithms, at which points share 1/e of what is common to their
+# errors. The harmonics of a shaker's motion, of phases that nobody knows, change H in a pattern that turns its sign
+# within a third of an octave. Errors taken as one over all points leave no room for it: worse than independent ones.
+REACH = 0.2, 1.0
 WRONG_SIGN = 'is it counted as contact force (force = "contact")?'
 
 
@@ -36,6 +40,7 @@ class Curve:
     acceleration: np.ndarray  # (n,) m/s2, peak, of each point its own
     H: np.ndarray  # (n,) m/N, complex
     error: np.ndarray | None = None  # (n, 2) standard errors: of the magnitude, relative, and of the phase, rad
+    common: np.ndarray | None = None  # (n,) the part of either that neighbouring points share, relative
     harmonics: Harmonics | None = None
 
     @property
@@ -71,6 +76,7 @@ class Curve:
             self.acceleration[points],
             self.H[points],
             None if self.error is None else self.error[points],
+            None if self.common is None else self.common[points],
             self.harmonics and self.harmonics.at(points),
         )
 
@@ -89,7 +95,9 @@ class Source:
         """With this sign of the force, and without the inertia of the fixture: F_head = F_cell - m a."""
         H = SENSES[self.force] * curve.H
         stiffness = 1 / H + self.fixture_mass * (2 * np.pi * curve.frequency) ** 2
-        return replace(curve, H=1 / stiffness, error=_turned(curve.error, 1 / stiffness / H))
+        factor = 1 / stiffness / H
+        common = None if curve.common is None else np.abs(factor) * curve.common
+        return replace(curve, H=1 / stiffness, error=_turned(curve.error, factor), common=common)
 
 
 def _turned(error: np.ndarray | None, factor: np.ndarray) -> np.ndarray | None:

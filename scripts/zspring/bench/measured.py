@@ -11,6 +11,7 @@ The file is a table as `tables.py` reads it, with the columns, in any order:
 
     magnitude_error     standard error of the magnitude, in its unit or in %
     phase_error [deg or rad]    that of the phase; both or none
+    common_error [1 or %]       the part of either that neighbouring points share, of the magnitude; may be missing
     harmonic_2 [N] ... harmonic_7 [N]   peaks of the contact force's harmonics, as many as were measured, and their
     harmonic_2_error [N] ...            standard errors, if they are known; an empty cell for one that is not
 
@@ -34,6 +35,7 @@ from .levels import levels_of, named_levels
 from .responses import HARMONICS, acceleration_of, response_of
 from .uff import read_uff
 
+ROUNDED = 1e-6  # relative, of what files have
 ALIASES = {"h re": "real", "h im": "imaginary", "imag": "imaginary"}
 
 
@@ -91,7 +93,8 @@ def read_csv(path: Path, amplitude: float | None) -> list[Curve]:
         levels = named_levels(table["level"].cells)
     else:
         levels = levels_of(frequency, acceleration, steps, step_unit)
-    whole = Curve("", frequency, acceleration, H, _errors(table, kind, np.abs(value)), _harmonics(table))
+    errors = _errors(table, kind, np.abs(value))
+    whole = Curve("", frequency, acceleration, H, errors, _common(table, errors), _harmonics(table))
     return [replace(whole.at(level.points), label=level.label) for level in levels]
 
 
@@ -108,6 +111,19 @@ def _errors(table: Table, kind: str, magnitude: np.ndarray) -> np.ndarray | None
     else:
         relative = table.numbers("magnitude error", "1", positive=True)
     return np.column_stack([relative, table.numbers("phase error", "rad", positive=True)])
+
+
+def _common(table: Table, errors: np.ndarray | None) -> np.ndarray | None:
+    """The part (n,) of errors (n, 2) that neighbouring points share. Raises ZSpringError where it is no part."""
+    if "common error" not in table:
+        return None
+    common = table.numbers("common error", "1")
+    least = np.full(common.shape, np.nan) if errors is None else errors.min(axis=1)
+    for line, value, whole in zip(table.lines, common, least):
+        if not 0 <= value <= whole * (1 + ROUNDED):
+            text = f"{table.path}, line {line}: common_error = {100 * value:g} %: must be a part of magnitude_error and"
+            raise ZSpringError(f"{text} phase_error" + ("" if errors is None else f", so 0 to {100 * whole:g} %"))
+    return common
 
 
 def _harmonics(table: Table) -> Harmonics | None:

@@ -16,8 +16,8 @@ from .problem import Problem
 
 ABOUT = {
     "Parameters": "Least squares over all points. A standard error is what the scatter of the residuals leaves open, "
-    "or the measurement's own errors where they weigh, if these are independent and the model is right; it knows "
-    "nothing of what the model leaves out.",
+    "or the measurement's own errors where they weigh, if these are independent but for what neighbours share, and the "
+    "model is right; it knows nothing of what the model leaves out.",
     "Intervals": "By profile likelihood: how far a parameter may go before the others can no longer make up for it. "
     "From the posterior: between which ends 95 % of the draws are, even between the bounds before the measurement.",
     "Correlations": "Close to 1 or -1: the data know a combination of the two better than either.",

@@ -16,6 +16,7 @@ from ..bench.static_test import StaticTest
 from ..receptance import receptance
 from ..variables import Value
 from .settings import Settings
+from .whitening import Whitening
 
 # Good enough to find the right valley. The step, in s, is not for differences: those with friction are 30 % off.
 COARSE_STEP, COARSE_TOLERANCE = 2e-3, 1e-2
@@ -119,6 +120,7 @@ class Problem:
         self.is_costly = model.is_costly
         # By the measurement's own standard errors: residuals are then in these.
         self.is_weighted = settings.weights == "errors"
+        self._whitening = Whitening(self.curves, SETTLED.tolerance) if self.is_weighted else None
 
     def thinned(self, points: int) -> Problem:
         """The same problem on a part: at most so many points of each curve, and steps of at least 2 ms.
@@ -151,8 +153,8 @@ class Problem:
         """Residuals (m,): real and imaginary part of each point, harmonics, then the static test; finite always.
 
         Logarithmic: log(H / measured), its real part the relative error of the magnitude, its imaginary part
-        that of the phase in rad; each over its standard error where they are known. Linear: difference over the root
-        mean square of the measured curve.
+        that of the phase in rad; where they are known, in standard errors and without what these have in common.
+        Linear: difference over the root mean square of the measured curve.
         """
         return np.concatenate([part for _, part in self._parts(answer)])
 
@@ -169,23 +171,12 @@ class Problem:
 
     def _parts(self, answer: Answer) -> list[tuple[str, np.ndarray]]:
         """Residuals by kind; those of one kind are alike in size."""
-        parts = []
-        for i, (curve, H) in enumerate(zip(self.curves, answer.curves)):
-            with np.errstate(invalid="ignore", divide="ignore"):
-                if self.settings.error == "log":
-                    error = np.log(H / curve.H)
-                else:
-                    quantity = self.settings.quantity
-                    wanted = as_quantity(curve.H, quantity, curve.frequency)
-                    scale = np.sqrt(np.mean(np.abs(wanted) ** 2))
-                    error = (as_quantity(H, quantity, curve.frequency) - wanted) / scale
-            off = _penalised(np.column_stack([error.real, error.imag]))
-            if self.is_weighted and curve.error is not None:
-                off /= np.hypot(curve.error, SETTLED.tolerance)  # the model's own scatter
-            parts.append((POINTS, off.T.ravel()))
-            if self.settings.harmonics and answer.harmonics:
-                kind = POINTS if self.is_weighted else "harmonics"
-                parts.append((kind, self._harmonics(curve, answer.harmonics[i])))
+        error = np.concatenate([self._off(curve, H) for curve, H in zip(self.curves, answer.curves)])
+        off = _penalised(np.column_stack([error.real, error.imag]))
+        parts = [(POINTS, (self._whitening(off) if self._whitening else off).T.ravel())]
+        if self.settings.harmonics and answer.harmonics:
+            kind = POINTS if self.is_weighted else "harmonics"
+            parts += [(kind, self._harmonics(*each)) for each in zip(self.curves, answer.harmonics)]
         if self.static and self.settings.static and answer.static is not None:
             wanted, force = (f - f.mean() for f in (self.static.force, answer.static))
             points = sum(curve.frequency.size for curve in self.curves)
@@ -199,6 +190,15 @@ class Problem:
             error = weight * (force - wanted)
             parts.append(("static test", _penalised(error)))
         return parts
+
+    def _off(self, curve: Curve, H: np.ndarray) -> np.ndarray:
+        """How far the receptance H (n,) is from the measured one, magnitude and phase as one complex number (n,)."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            if self.settings.error == "log":
+                return np.log(H / curve.H)
+            quantity = self.settings.quantity
+            wanted = as_quantity(curve.H, quantity, curve.frequency)
+            return (as_quantity(H, quantity, curve.frequency) - wanted) / np.sqrt(np.mean(np.abs(wanted) ** 2))
 
     def _harmonics(self, curve: Curve, computed: np.ndarray) -> np.ndarray:
         """Residuals (k,) of those that count, over the first harmonic, or over standard errors where those count."""
