@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from commands import head, in_process, table
 from paths import ROOT
@@ -18,10 +20,13 @@ from zspring.bench.measured import read_curves
 from zspring.fmu import Fmu
 from zspring.recordings.evaluate import evaluate
 from zspring.recordings.example import recorded
+from zspring.recordings.groups import grouped
+from zspring.recordings.moderation import moderated, shrunk
+from zspring.recordings.points import Point
 from zspring.recordings.run import holds_in
 from zspring.recordings.settings import Settings, read_settings
 from zspring.recordings.signals import Record, Signal, read_record
-from zspring.recordings.sine import error_of_mean
+from zspring.recordings.sine import error_of_mean, students, variance_of_mean
 from zspring.recordings.track import Stretch
 
 if sys.version_info >= (3, 11):
@@ -180,10 +185,13 @@ def as_record(shaker: Shaken, displacement: np.ndarray, force: np.ndarray, steps
 
 
 def test_the_stated_errors_are_those_that_there_are(tmp_path):
-    """95 % intervals cover 93 to 97 % of 200 points: noise that hangs together, few and many periods, 16-bit steps."""
+    """95 % intervals cover 93 to 97 % of 200 points: noise that hangs together, few and many periods, 16-bit steps.
+
+    By each point's own scatter, and by what that of all tells.
+    """
     settings = read_settings(written(tmp_path, BASE))
     random = np.random.default_rng(5)
-    covered, errors = [], []
+    points, off = [], []
     for number, f in enumerate(np.linspace(1.2, 13, 200)):
         record = shaken([f], rate=250.0, periods=(9, 14, 30)[number % 3] + 0.4)
         noise = random.standard_normal((2, record.time.size + 50))
@@ -195,11 +203,13 @@ def test_the_stated_errors_are_those_that_there_are(tmp_path):
             record, record.displacement + 0.05 * peak * noise[0], record.force + 0.2 * noise[1], (peak / 400, 0.02)
         )
         point = evaluate(stained, Stretch(0.0, record.time[-1], f * 1.0005, peak), settings)
+        points.append(point)
         error = point.H / LINEAR.receptance(f) - 1
-        errors.append((point.magnitude_error, point.phase_error))
-        covered += [abs(error.real) < 1.96 * point.magnitude_error, abs(error.imag) < 1.96 * point.phase_error]
-    assert 0.93 <= np.mean(covered) <= 0.97
-    assert np.median(errors) < 0.02
+        off.append(np.abs([error.real, error.imag]))
+    for each in (points, moderated(points)):
+        errors = np.array([point.errors for point in each])
+        assert 0.93 <= np.mean(np.array(off) < 1.96 * errors) <= 0.97
+        assert np.median(errors) < 0.02
 
 
 def test_the_error_of_a_mean_knows_that_few_values_tell_little():
@@ -214,6 +224,40 @@ def test_the_error_of_a_mean_knows_that_few_values_tell_little():
     assert error_of_mean(slow) > 2 * slow.std() / 10
 
 
+def test_variances_move_towards_what_all_points_tell():
+    """True ones are s0^2 d0 / chi-squared(d0), drawn by SciPy: what is found is their mean, given what was seen."""
+    d, d0, usual = 6.0, 9.0, 2.0
+    true = stats.invgamma(d0 / 2, scale=d0 * usual / 2).rvs(40_000, random_state=1)
+    seen = true * stats.chi2(d).rvs(true.size, random_state=2) / d
+    found, freedom = shrunk(seen, np.full(true.size, d))
+    np.testing.assert_allclose(freedom, d0 + d, rtol=0.05)
+    for low, high in itertools.pairwise(np.quantile(seen, [0, 0.1, 0.5, 0.9, 1])):
+        part = (low <= seen) & (seen < high)
+        assert students(found, freedom)[part].mean() == pytest.approx(true[part].mean(), rel=0.05)
+
+
+def test_variances_that_scatter_by_chance_alone_are_one():
+    random, freedom = np.random.default_rng(3), np.array([4.0, 6.0, 11.0] * 6)
+    seen = stats.chi2(freedom).ppf(random.permutation(np.linspace(0.1, 0.9, 18))) / freedom
+    found, told = shrunk(seen, freedom)
+    np.testing.assert_allclose(found, freedom @ seen / freedom.sum())
+    np.testing.assert_array_equal(told, freedom.sum())
+
+
+def test_a_mean_that_weighs_points_by_their_errors_is_as_good_as_it_says():
+    """17 points of 20 periods. By its own few numbers each point's weight makes the mean a fifth worse than it says."""
+    random, pulls = np.random.default_rng(4), {"own": [], "all": []}
+    for _ in range(300):
+        size = random.uniform(0.5, 2, 17)  # known, as white noise is
+        values = size[:, None] * random.standard_normal((17, 20))
+        variance, freedom = np.array([variance_of_mean(each) for each in values]).T
+        shares = shrunk(variance / size**2, freedom)
+        for name, error in ("own", students(variance, freedom)), ("all", size**2 * students(*shares)):
+            pulls[name].append(values.mean(1) @ (1 / error) / np.sqrt(np.sum(1 / error)))
+    assert np.std(pulls["own"]) > 1.12
+    assert np.std(pulls["all"]) == pytest.approx(1, abs=0.08)
+
+
 def test_steps_that_are_alike_in_every_period_are_no_certainty(tmp_path):
     """Without noise and with a whole number of values in a period the scatter is 0; the converter's steps are not."""
     settings = read_settings(written(tmp_path, BASE))
@@ -226,6 +270,18 @@ def test_steps_that_are_alike_in_every_period_are_no_certainty(tmp_path):
         error = point.H / LINEAR.receptance(f) - 1
         pulls += [error.real / point.magnitude_error, error.imag / point.phase_error]
     assert 0.3 < np.sqrt(np.mean(np.square(pulls))) < 1.5
+
+
+def test_a_point_has_no_less_in_common_than_its_neighbours():
+    """Within 0.2 in the logarithm of the frequency, of its own level alone."""
+    frequency, common = (2.0, 3.0, 3.5, 4.0, 9.0, 3.6), (0.004, 0.001, 0.0, 0.003, 0.002, 0.01)
+    points = [
+        Point("a", "1" if i < 5 else "2", 0, 1, f, 9, H=1e-4j, acceleration=1.0 + (i == 5), common=c)
+        for i, (f, c) in enumerate(zip(frequency, common))
+    ]
+    one, other = grouped(points, "up")
+    assert [point.common for point in one.points] == [0.004, 0.001, 0.003, 0.003, 0.002]
+    assert [point.common for point in other.points] == [0.01]
 
 
 def test_the_virtual_bench_gives_what_the_bench_in_the_fmu_has(tmp_path):

@@ -6,10 +6,12 @@ Every period is fitted for itself; their scatter about their mean tells the erro
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from .moderation import moderated
 from .points import Point
 from .settings import Settings
 from .signals import Record
@@ -21,6 +23,7 @@ from .sine import (
     errors_of_means,
     harmonics_within,
     undisturbed,
+    variance_of_mean,
     without_trend,
 )
 from .steady import repeats_after, settled, usual
@@ -33,7 +36,7 @@ HUNTING = 0.02  # relative scatter of the motion's amplitude
 
 
 def evaluate(record: Record, hold: Stretch, settings: Settings, swept: bool = False) -> Point:
-    """The point of a hold, or why there is none.
+    """The point of a hold, or why there is none; not yet judged.
 
     swept   H changes evenly along it
     """
@@ -98,13 +101,15 @@ def _measured(
     relative = Z[:, 0] / z - F[:, 0] / f
     force_noise, motion_noise = (float(np.median(found.residual[kept])) for found in (force, moved))
     per_period = record.rate / window.frequency
+    seen = abs(moved.amplitude[kept, 0].mean())  # of the motion, in the sensor's quantity
     rounding = math.hypot(
         rounding_error(record.force.step, force_noise, abs(f), per_period),
-        rounding_error(motion.step, motion_noise, abs(moved.amplitude[kept, 0].mean()), per_period),
+        rounding_error(motion.step, motion_noise, seen, per_period),
     )
     loss = -np.pi * (order * (F * Z.conj()).imag).sum(1)
     motions, forces = (_clear(amplitudes) for amplitudes in (Z, F))
-    systematic = math.hypot(rounding, control_error(motions / abs(z), forces / abs(f)))
+    variance, freedom = np.array([variance_of_mean(part, swept) for part in (relative.real, relative.imag)]).T
+    white = 2 / (kept.size * per_period) * ((force_noise / abs(f)) ** 2 + (motion_noise / seen) ** 2)
     begin, end = window.begin + np.array([kept[0], kept[-1] + 1]) / window.frequency
     repeat, size = repeats_after(*window.values(record.force, begin, end), window.frequency, window.harmonics)
     agreement, agreement_error = complex(math.nan, math.nan), math.nan
@@ -123,8 +128,11 @@ def _measured(
         end=float(end),
         periods=kept.size,
         H=complex(-z / f),
-        magnitude_error=math.hypot(error_of_mean(relative.real, swept), systematic),
-        phase_error=math.hypot(error_of_mean(relative.imag, swept), systematic),
+        variance=variance,
+        freedom=freedom,
+        white=white,
+        rounding=rounding,
+        common=control_error(motions / abs(z), forces / abs(f)),
         acceleration=float(abs(z) * omega**2),
         scatter=math.sqrt(max(float(amplitude.var(ddof=1)) - of_noise**2, 0)) / abs(z),
         force=padded(np.abs(F.mean(0))),
@@ -141,7 +149,7 @@ def _measured(
         agreement_error=agreement_error,
         subharmonic=repeat,
     )
-    return judged(replace(measured, marks=(*marks, *([_repeats(repeat, size)] if repeat > 1 else []))), settings)
+    return replace(measured, marks=(*marks, *([_repeats(repeat, size)] if repeat > 1 else [])))
 
 
 def _repeats(periods: int, size: float) -> str:
@@ -192,9 +200,14 @@ def rounding_error(step: float, noise: float, amplitude: float, per_period: floa
     return rms / amplitude * math.sqrt(2 / max(min(per_period / 4, amplitude / step), 1))
 
 
+def told(points: Sequence[Point], settings: Settings) -> list[Point]:
+    """The points of one record, by what all of them tell of their errors, and judged by that."""
+    return [judged(point, settings) for point in moderated(points)]
+
+
 def judged(point: Point, settings: Settings) -> Point:
     """With what its numbers make of it: marks, or why it is left out."""
-    limits, marks, why = settings.limits, [*point.marks], ""
+    limits, marks, why = settings.limits, [*point.marks], point.left_out
     worst = max(point.magnitude_error, point.phase_error)
     for value, limit, text in (
         (point.distortion, limits.distortion, "distortion of the motion"),

@@ -21,13 +21,14 @@ def write_responses(path: Path, head: Mapping[str, str], groups: Sequence[Group]
     """The responses of these groups, in the form that `bench.measured` reads."""
     columns = ["frequency [Hz]", "amplitude [m/s2]", "level"]
     columns += ["magnitude [m/N]", "magnitude_error [m/N]", "phase [deg]", "phase_error [deg]"]
+    columns += ["common_error [1]"]
     columns += [f"harmonic_{k}{what} [N]" for k in HARMONICS for what in ("", "_error")]
     columns += ["loss [J]", "loss_error [J]", "periods", "status"]
     rows = [
         [
             *(p.frequency, p.acceleration, group.label),
             *(abs(p.H), abs(p.H) * p.magnitude_error),
-            *(float(phase_degrees(p.H, "receptance")), math.degrees(p.phase_error)),
+            *(float(phase_degrees(p.H, "receptance")), math.degrees(p.phase_error), p.common),
             *np.column_stack([p.force, p.force_error])[1:].ravel(),
             *(p.loss, p.loss_error, p.periods, p.status),
         ]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..bench.curves import Curve
+from ..bench.curves import REACH, Curve
 from ..bench.levels import levels_of
 from ..errors import ZSpringError
 from .points import Point
@@ -74,7 +74,7 @@ def grouped(points: Sequence[Point], direction: str | None) -> list[Group]:
             ways = [direction] * len(own) if direction else _ways([point.frequency for point in own])
             for point, way in zip(own, ways):
                 found.setdefault((label, way), []).append(point)
-    groups = [Group(label, way, _with_control(own)) for (label, way), own in found.items()]
+    groups = [Group(label, way, _with_neighbours(_with_control(own))) for (label, way), own in found.items()]
     return sorted(groups, key=lambda group: float(np.median(group.curve.acceleration)))
 
 
@@ -96,6 +96,17 @@ def _with_control(points: Sequence[Point]) -> list[Point]:
         share[0] = 0.0  # the fundamental, which is to move
         result.append(replace(point, force_error=np.hypot(point.force_error, share)))
     return result
+
+
+def _with_neighbours(points: Sequence[Point]) -> list[Point]:
+    """Points of one level of which none has less in common with its neighbours than these have.
+
+    Where the rods are about to slip the force has no harmonics of its own yet, but those of the motion count the most.
+    """
+    place = np.log([point.frequency for point in points])
+    common = np.array([point.common for point in points])
+    near = np.abs(np.subtract.outer(place, place)) < REACH[0]
+    return [replace(point, common=float(common[there].max())) for point, there in zip(points, near)]
 
 
 def _ways(frequencies: Sequence[float]) -> Sequence[str | None]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .sine import MOST
+from .sine import MOST, students
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,13 @@ class Point:
     found: int  # whole periods in the hold
     periods: int = 0  # that count
     H: complex = complex(math.nan, math.nan)  # m/N
-    magnitude_error: float = math.nan  # relative, standard error
-    phase_error: float = math.nan  # rad, standard error
+    variance: np.ndarray = field(
+        default_factory=lambda: np.full(2, np.nan)
+    )  # of magnitude, relative, and phase: scatter
+    freedom: np.ndarray = field(default_factory=lambda: np.full(2, np.nan))  # how many numbers tell it
+    white: float = math.nan  # what either variance would be if all that is not periodic were white noise
+    rounding: float = math.nan  # standard error of magnitude, relative, and phase by the converter's steps
+    common: float = math.nan  # the same by what neighbouring points share
     acceleration: float = math.nan  # m/s2, peak
     scatter: float = math.nan  # of the motion's amplitude from period to period, relative, beyond its noise
     force: np.ndarray = field(default_factory=lambda: np.full(MOST, np.nan))  # N, peaks
@@ -44,6 +49,19 @@ class Point:
     subharmonic: int = 1  # periods after which the force repeats
     marks: tuple[str, ...] = ()  # what makes it less than it seems
     left_out: str = ""  # why it is not used
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Standard errors (2,) of the magnitude, relative, and of the phase in rad."""
+        return np.sqrt(students(self.variance, self.freedom) + self.rounding**2 + self.common**2)
+
+    @property
+    def magnitude_error(self) -> float:
+        return float(self.errors[0])
+
+    @property
+    def phase_error(self) -> float:
+        return float(self.errors[1])
 
     @property
     def status(self) -> str:

@@ -17,7 +17,7 @@ from ..heads import content_of
 from ..records import keep_others
 from . import report
 from .cycle import cycle_of
-from .evaluate import evaluate
+from .evaluate import evaluate, told
 from .files import write_holds, write_responses
 from .groups import Group, asked_for, grouped
 from .plot import harmonics_figure, hold_figure, response_figure
@@ -92,7 +92,7 @@ def holds_in(record: Record, settings: Settings) -> tuple[list[Point], list[str]
         text = f"{record.path}: no steady part: no {low:g} to {high:g} Hz held in {name}"
         why = "is it a slow sweep?" if min(noise) < 0.02 else f"its turns scatter by {100 * min(noise):.0f} %"
         raise ZSpringError(f"{text}; {why}")
-    points = [evaluate(record, hold, settings) for hold in holds]
+    points = told([evaluate(record, hold, settings) for hold in holds], settings)
     if settings.sweep.frequencies:
         return asked_for(points, settings.sweep.frequencies, record.path.name)
     return points, []

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from ..bench.responses import HARMONICS
+
+Number = TypeVar("Number", float, np.ndarray)
 
 MOST = HARMONICS[-1]  # harmonics that are told
 MOST_ROUNDS = 30
@@ -123,26 +126,37 @@ def _slope(means: np.ndarray) -> float:
     return float(np.median(steps[:, 0] / steps[:, 1])) if far else 0.0
 
 
-def error_of_mean(values: np.ndarray, trend: bool = False) -> float:
-    """Standard error of the mean of values (M,) in the order of time, which may hang together.
+def variance_of_mean(values: np.ndarray, trend: bool = False) -> tuple[float, int]:
+    """Variance of the mean of values (M,) in the order of time, which may hang together, and how many numbers tell it.
 
     trend   take off a straight line: it is no noise
 
     From the slowest B cosine transforms, equally weighted (Lazarus, Lewis, Stock, Watson 2018): the noise near the
     frequency itself counts, not that of the whole period. With B = M - 1 it is the scatter's usual formula. B numbers
-    tell it, so that it is the standard deviation of Student's distribution (JCGM 101, 6.4.9): +- 1.96 of it is a
-    95 % interval, for few periods as for many.
-    NaN for fewer than FEWEST_PERIODS.
+    tell it. NaN for fewer than FEWEST_PERIODS.
     """
     from scipy.fft import dct  # slow to load
 
     count = values.size
     if count < FEWEST_PERIODS + trend:
-        return math.nan
+        return math.nan, 0
     values = without_trend(values) if trend else values
     told = min(count - 1 - trend, max(6, round(count ** (2 / 3) / 1.5)))
     slowest = dct(values, type=2, norm="ortho")[1 + trend : told + 1 + trend]
-    return float(math.sqrt(np.mean(slowest**2) / count * told / (told - 2)))
+    return float(np.mean(slowest**2) / count), told
+
+
+def error_of_mean(values: np.ndarray, trend: bool = False) -> float:
+    """Standard error of the mean of values (M,), see variance_of_mean."""
+    return math.sqrt(students(*variance_of_mean(values, trend)))
+
+
+def students(variance: Number, freedom: Number) -> Number:
+    """Variance of what so many numbers tell the variance of: that of Student's distribution (JCGM 101:2008, 6.4.9).
+
+    +- 1.96 of its root is a 95 % interval, for few numbers as for many.
+    """
+    return variance * freedom / (freedom - 2)
 
 
 def without_trend(values: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import ZSpringError
-from .evaluate import evaluate
+from .evaluate import evaluate, told
 from .points import Point
 from .settings import Settings, Sweep
 from .signals import Record, Signal
@@ -57,7 +57,8 @@ def swept_points(record: Record, parts: Sequence[Turns], settings: Settings) -> 
         text = f"{record.path}: no sweep: {len(stretches)} stretches of {count} turns"
         raise ZSpringError(f"{text} within {low:g} to {high:g} Hz, 3 at least are needed")
     rate = _rate(record, np.array(stretches), sweep)
-    return _judged([_point(record, begin, end, rate, settings) for begin, end in stretches], rate)
+    points = told([_point(record, begin, end, rate, settings) for begin, end in stretches], settings)
+    return _with_lag(points, rate)
 
 
 def _rate(record: Record, stretches: np.ndarray, sweep: Sweep) -> Rate:
@@ -94,7 +95,7 @@ def _point(record: Record, begin: float, end: float, rate: Rate, settings: Setti
     return replace(point, begin=begin, end=end, frequency=there, acceleration=acceleration)
 
 
-def _judged(points: list[Point], rate: Rate) -> list[Point]:
+def _with_lag(points: list[Point], rate: Rate) -> list[Point]:
     """With what the sweep's rate makes of H, in the errors and, where it is large, as a mark.
 
     With the dynamic stiffness G over the angular frequency w the force is that of G - i w' G'' / 2 (first term of the
@@ -117,9 +118,4 @@ def _judged(points: list[Point], rate: Rate) -> list[Point]:
 
 def _lagging(point: Point, share: float) -> Point:
     mark = (f"swept too fast: H off by about {100 * share:.2g} %",) if share > LAGS else ()
-    return replace(
-        point,
-        magnitude_error=math.hypot(point.magnitude_error, share),
-        phase_error=math.hypot(point.phase_error, share),
-        marks=(*point.marks, *mark),
-    )
+    return replace(point, common=math.hypot(point.common, share), marks=(*point.marks, *mark))
