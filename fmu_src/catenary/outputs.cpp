@@ -5,12 +5,25 @@
 namespace zspring::catenary {
 namespace {
 
+// Index of the dropper that is nearest to a place; -1 without droppers.
+int nearest_dropper(const Mesh& mesh, double place) {
+  const std::vector<int>& stations = mesh.droppers;
+  const auto after = std::lower_bound(stations.begin(), stations.end(), place,
+                                      [&](int station, double limit) { return mesh.x[station] < limit; });
+  const int j = static_cast<int>(after - stations.begin());
+  if (j == 0) return stations.empty() ? -1 : 0;
+  return after == stations.end() || place - mesh.x[after[-1]] <= mesh.x[*after] - place ? j - 1 : j;
+}
+
 // What the definitions are written with.
 struct View {
   View(const Line& overhead, const SimulationState& state)
       : line(overhead), s(state.line), map(state.map), datum(state.datum) {
     for (int i = 0; i < pantographs; ++i) contact[i] = line.mesh.at(s.passage[i].position);
-    for (int i = 0; i < most_points; ++i) point[i] = line.mesh.at(line.p.point.position[i]);
+    for (int i = 0; i < most_points; ++i) {
+      point[i] = line.mesh.at(line.p.point.position[i]);
+      dropper[i] = nearest_dropper(line.mesh, line.p.point.position[i]);
+    }
     double least = HUGE_VAL, most = -HUGE_VAL;
     for (int j = 0; j < static_cast<int>(line.mesh.droppers.size()); ++j) {
       const double force = dropper_force(j);
@@ -35,6 +48,7 @@ struct View {
   const AffineMap (&map)[pantographs];
   const double (&datum)[pantographs];              // m, of the heights under the pantographs
   Place contact[pantographs], point[most_points];  // under the pantographs; watched
+  int dropper[most_points];                        // that is nearest to what is watched; -1: none
   Count slack = 0;                                 // droppers
   int weakest = 0, strongest = 0;                  // droppers
 };
@@ -69,17 +83,6 @@ double upper_height(const View& x, int point, bool of_stitch) {
   return upper(x, x.s.u, point, of_stitch) + upper(x, x.line.shape.height, point, of_stitch);
 }
 
-// Index of the dropper that is nearest to a point; -1 without droppers.
-int nearest_dropper(const View& x, int point) {
-  const std::vector<int>& stations = x.line.mesh.droppers;
-  const std::vector<double>& places = x.line.mesh.x;
-  const double at = x.line.p.point.position[point];
-  const auto after = std::lower_bound(stations.begin(), stations.end(), at,
-                                      [&](int station, double place) { return places[station] < place; });
-  const int j = static_cast<int>(after - stations.begin());
-  if (j == 0) return stations.empty() ? -1 : 0;
-  return after == stations.end() || at - places[after[-1]] <= places[*after] - at ? j - 1 : j;
-}
 double place_of_dropper(const View& x, int j) { return j < 0 ? 0 : x.line.mesh.x[x.line.mesh.droppers[j]]; }
 
 double at_support(const View& x, const VectorXd& u, int i) {
@@ -107,8 +110,8 @@ OUTPUT(point_dot_uplift, uplift(x, x.point[i]), uplift_change(x, x.point[i], d, 
 OUTPUT(point_dot_velocity, velocity(x, x.point[i], 0), velocity_change(x, x.point[i], 0, d, stays))
 OUTPUT(point_dot_messenger_height, upper_height(x, i, false), upper(x, d.u, i, false))
 OUTPUT(point_dot_stitch_height, upper_height(x, i, true), upper(x, d.u, i, true))
-DISCRETE(point_dot_dropper_position, place_of_dropper(x, nearest_dropper(x, i)))
-OUTPUT(point_dot_dropper_force, x.force(nearest_dropper(x, i)), x.force_change(d, nearest_dropper(x, i)))
+DISCRETE(point_dot_dropper_position, place_of_dropper(x, x.dropper[i]))
+OUTPUT(point_dot_dropper_force, x.force(x.dropper[i]), x.force_change(d, x.dropper[i]))
 DISCRETE(droppers_dot_slack, x.slack)
 OUTPUT(droppers_dot_force_min, x.dropper_force(x.weakest), x.dropper_force_change(d, x.weakest))
 OUTPUT(droppers_dot_force_max, x.dropper_force(x.strongest), x.dropper_force_change(d, x.strongest))
