@@ -17,6 +17,7 @@ from .frf.command import frf
 from .identify.command import identify
 from .info import info
 from .interrupt import Interrupted
+from .line_file.command import line
 from .linearize.command import linearize
 from .mechanism.command import mechanism
 from .recordings.command import recordings
@@ -55,7 +56,7 @@ def research_command(name: str) -> click.Command:
 
 for command in (
     *(frf, simulate, recordings, identify, info, export),
-    *(static, slip, mechanism, linearize, study, couple, en50318),
+    *(static, slip, mechanism, linearize, study, line, couple, en50318),
 ):
     commands.add_command(command)
 for name in RESEARCH:

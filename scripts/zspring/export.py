@@ -11,8 +11,8 @@ import click
 from .errors import ZSpringError
 from .exported_fmu import Copy
 from .fmu import CATENARY, PANTOGRAPH, Fmu, installed_fmu
+from .line_file.chosen import chosen_line
 from .options import chosen_parameters, line_option, parameters_option
-from .parameter_sets import LINES, PANTOGRAPHS
 from .variables import Value
 
 # What shows at once how each FMU behaves: the bench, with rods that stick and slide, and a line under a force that
@@ -44,19 +44,23 @@ def export(folder, plain, flat, demo, parameter_set, assignments, line_set, set_
     --parameters, --line, --set and --set-line change what the copies start with, parameters and inputs: an input that
     nothing is connected to, such as pantograph[1].speed, keeps it. Internal steps stay those of the FMU unless set.
     """
-    chosen = {PANTOGRAPH: (parameter_set, assignments, PANTOGRAPHS), CATENARY: (line_set, set_line, LINES)}
+    chosen = {PANTOGRAPH: (parameter_set, assignments), CATENARY: (line_set, set_line)}
     copies = {installed_fmu(model): folder / f"{model}.fmu" for model in chosen}
     for source, target in copies.items():
         if target.exists() and target.samefile(source):
             raise ZSpringError(f"FOLDER {folder}: has the package's own {target.name}; give another folder")
     folder.mkdir(parents=True, exist_ok=True)
-    for (model, (named, given, kind)), (source, target) in zip(chosen.items(), copies.items()):
+    for (model, (named, given)), (source, target) in zip(chosen.items(), copies.items()):
         shown, stop = DEMO[model] if demo else ([], None)
         unfinished = target.with_suffix(".part")
         try:
-            with Fmu(source) as fmu:
-                settable = ("parameter", "input")
-                starts = chosen_parameters(fmu, named, [*shown, *given], kind=kind, settable=settable)
+            with Fmu(source) as opened:
+                fmu, settable = opened, ("parameter", "input")
+                if model == CATENARY:
+                    line = chosen_line(named, opened, [*shown, *given], settable=settable)
+                    fmu, starts = line.catenary, line.parameters
+                else:
+                    starts = chosen_parameters(fmu, named, [*shown, *given], settable=settable)
                 check(fmu, starts)
                 Copy(plain, flat, starts, stop).write(fmu, unfinished)
             os.replace(unfinished, target)

@@ -1,4 +1,4 @@
-"""Copies of an FMU for other tools: other start values, without enumerations, with plain names; the libraries stay."""
+"""Copies of an FMU: other start values, another line, without enumerations, with plain names; the libraries stay."""
 
 from __future__ import annotations
 
@@ -14,9 +14,11 @@ from pathlib import Path
 
 from .errors import ZSpringError
 from .fmu import Fmu
+from .line_table import FILE, replaces
 from .variables import Value
 
 DESCRIPTION = "modelDescription.xml"
+UNUSED = f"Not used: resources/{FILE} tells the line"
 TYPES = ("Real", "Integer", "Boolean", "Enumeration")
 
 
@@ -28,31 +30,41 @@ class Copy:
     flat    all variables are Reals, and their names have neither dots nor brackets
     starts  start values of parameters and inputs, in the FMU's units
     stop    s, of the DefaultExperiment; None: as it is
+    files   more files of its resources, by name
     """
 
     plain: bool = False
     flat: bool = False
     starts: Mapping[str, Value] = field(default_factory=dict)
     stop: float | None = None
+    files: Mapping[str, bytes] = field(default_factory=dict)
 
     def write(self, fmu: Fmu, path: Path) -> None:
-        """Raises ZSpringError as flat_names, OSError."""
-        if self == Copy():
+        """With the line that the FMU has now. Raises ZSpringError as flat_names, OSError."""
+        if self == Copy() and fmu.guid == fmu.description.guid:
             shutil.copyfile(fmu.path, path)
             return
+        resources = {f"resources/{name}": content for name, content in self.files.items()}
+        if fmu.line:
+            resources[f"resources/{FILE}"] = fmu.line.content
         with zipfile.ZipFile(fmu.path) as old, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as new:
             for entry in old.infolist():
-                content = old.read(entry)
-                new.writestr(entry, self._described(fmu, content) if entry.filename == DESCRIPTION else content)
+                if entry.filename not in resources:
+                    content = old.read(entry)
+                    new.writestr(entry, self._described(fmu, content) if entry.filename == DESCRIPTION else content)
+            for name, content in resources.items():
+                new.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), content, zipfile.ZIP_DEFLATED)
 
     def _described(self, fmu: Fmu, content: bytes) -> bytes:
         root = ET.fromstring(content)
-        root.set("guid", fmu.description.guid + self._origin(fmu))
+        root.set("guid", self._guid(fmu))
         if self.stop is not None:
             root.find("DefaultExperiment").set("stopTime", f"{self.stop:g}")  # type: ignore[union-attr]
         variables = root.findall("ModelVariables/ScalarVariable")
         for variable in variables:
             kind, name = next(child for child in variable if child.tag in TYPES), variable.attrib["name"]
+            if fmu.line and variable.get("causality") == "parameter" and replaces(name):
+                variable.set("description", UNUSED)
             if name in self.starts:
                 value = self.starts[name]
                 kind.set("start", str(value).lower() if kind.tag == "Boolean" else repr(value))
@@ -78,12 +90,12 @@ class Copy:
         if self.flat:
             kind.tag = "Real"
 
-    def _origin(self, fmu: Fmu) -> str:
-        """What the library is told of the copy through the GUID: fmu_src/fmi/origin.hpp."""
-        told = " reals" if self.flat else ""
-        for name, value in self.starts.items():
-            told += f" {fmu.variables[name].valueReference}={struct.pack('>d', value).hex()}"
-        return told
+    def _guid(self, fmu: Fmu) -> str:
+        """That tells the library of the copy: fmu_src/fmi/origin.hpp."""
+        whole, *told = fmu.guid.split(" ")
+        kind = ["reals"] if self.flat and "reals" not in told else []
+        starts = [f"{fmu.variables[n].valueReference}={struct.pack('>d', v).hex()}" for n, v in self.starts.items()]
+        return " ".join([whole, *kind, *told, *starts])
 
 
 def flat_names(fmu: Fmu) -> list[str]:

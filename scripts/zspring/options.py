@@ -158,8 +158,8 @@ line_option = option(
     "line_set",
     kind=str,
     metavar="NAME|FILE",
-    help="Set the parameters of the line: the name of a set (`zspring info --sets` lists them) or an SSV file "
-    "of SSP 1.0.  [default: the catenary FMU's own, EN 50318:2002]",
+    help="The line: the name of a set (`zspring info --sets` lists them), an SSV file of SSP 1.0, or a line file, "
+    "LINE.toml, of `zspring line`.  [default: the catenary FMU's own, EN 50318:2002]",
 )
 
 

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -50,12 +50,16 @@ ALLOWED = {
 class Table(BaseModel):
     """A table of settings. Numbers are finite; a whole one may stand for any number, true and false may not."""
 
+    refused: ClassVar[Mapping[str, str]] = {}  # keys that one could think of and that cannot be, with the reason
+
     # Other keys are let in, so that the table, which knows its own, can refuse them.
     model_config = ConfigDict(extra="allow", frozen=True, strict=True, allow_inf_nan=False)
 
     @model_validator(mode="after")
     def _no_other_key(self) -> Table:
         for key in self.model_extra or ():
+            if key in self.refused:
+                raise ValueError(f"{key}: {self.refused[key]}")
             raise ValueError(f"unknown key {key!r}{did_you_mean(key, keys_of(type(self)))}")
         return self
 

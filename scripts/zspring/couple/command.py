@@ -13,10 +13,10 @@ from ..line.journey import MASSES, START_UPS, Journey
 from ..line.mean_force import STANDING, mean_force
 from ..line.schemes import DRIVES, SCHEMES, Coupling
 from ..line.system import System
+from ..line_file.chosen import chosen_line
 from ..options import (
     Spans,
     choice,
-    chosen_parameters,
     draws_option,
     format_option,
     line_fmu_option,
@@ -26,7 +26,6 @@ from ..options import (
     output_option,
     pantograph_options,
 )
-from ..parameter_sets import LINES
 from ..records import claimed
 
 SET_HERE = ("travel", "pantograph[1].start", "pantograph[2].start")  # parameters of the catenary
@@ -129,21 +128,20 @@ def couple(pantograph, output, suffix, **given) -> None:
         opened(given["line_fmu"] or installed_fmu(CATENARY)) as catenary,
         pantograph.opened(("drive",)) as (fmu, parameters),
     ):
-        line = chosen_parameters(catenary, given["line_set"], given["line_assignments"], SET_HERE, LINES)
+        chosen = chosen_line(given["line_set"], catenary, given["line_assignments"], SET_HERE)
         if given["tension"]:
-            line |= dict(zip(("contact_wire.tension", "messenger.tension"), given["tension"]))
+            chosen.parameters.update(zip(("contact_wire.tension", "messenger.tension"), given["tension"]))
         where = {name: given[name] for name in ("start", "stop", "step", "spacing", "start_up", "uplift_on")}
         journey = Journey(speed / 3.6, uplift=uplift or 0.0, **where)
-        system = System(catenary, fmu, line, [parameters] * given["count"], journey, coupling)
+        system = System(chosen.catenary, fmu, chosen.parameters, [parameters] * given["count"], journey, coupling)
         aim = run.Aim(mean_force(supply, speed), f"{supply} at {speed:g} km/h", spans) if supply else None
         if ssp_path:
             run.export_ssp(run.aimed(system, aim) if aim else system, ssp_path)
             return
-        chosen = given["line_set"], pantograph.parameter_set
         own_line = "the FMU's own" if given["line_fmu"] else "EN 50318:2002 (the FMU's own)"
         own_head = "the FMU's own" if pantograph.fmu_path else "DSA-380 (the FMU's own)"
-        named = (Path(each).stem if each else own for each, own in zip(chosen, (own_line, own_head)))
-        what = "Line {}, pantograph {}".format(*named)
+        head = Path(pantograph.parameter_set).stem if pantograph.parameter_set else own_head
+        what = f"Line {chosen.name or own_line}, pantograph {head}"
         with claimed(output):
             if given["compare_steps"]:
                 run.compare_and_write(run.aimed(system, aim) if aim else system, output, suffix, what)

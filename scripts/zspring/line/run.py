@@ -11,7 +11,7 @@ from dataclasses import replace
 from ..errors import ZSpringError
 from ..fmu import Instance
 from ..interrupt import Interrupted, stop_on_interrupt
-from ..variables import Value, parse, with_unit
+from ..variables import Value, exact_list, parse, with_unit
 from .calls import PreparedCalls
 from .journey import FittedJourney
 from .limits import most_supports
@@ -19,7 +19,7 @@ from .recorder import Recorder
 from .result import LineResult
 from .schemes import MAPPED, GaussSeidel, Implicit, Jacobi, Mapped, Pantographs
 from .sides import ContactInMaster, ContactInPantograph, Wire
-from .stated import UNDISTURBED
+from .stated import BOUNDARIES, UNDISTURBED
 from .system import System
 from .waves import fastest, undisturbed_until
 
@@ -213,6 +213,8 @@ def _settings(system: System, journey: FittedJourney, wire: Instance, heads: Seq
     for i in range(len(heads)):
         until = undisturbed_until(system.extent, journey, i * journey.spacing, fastest(system.catenary, system.line))
         settings[UNDISTURBED.format(i + 1)] = f"{until:.1f} m"
+    if system.catenary.line:
+        settings[BOUNDARIES] = exact_list(system.extent.boundaries, "m")
     named = [("catenary", system.catenary, wire)]
     named += [(f"pantograph {i + 1}", system.pantograph, head) for i, head in enumerate(heads)]
     for prefix, fmu, instance in named:

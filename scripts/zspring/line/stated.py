@@ -1,8 +1,8 @@
 """What the head of a file with a contact force says of the line and the run.
 
 Lines "# key: value unit" with the keys span, spans, first support and speed; in the files of `zspring couple` and
-`zspring en50318` it stands under the parameters of the catenary, whose first support is at 0 m, and where the far end
-begins to tell stands beside it. Values that do not begin with a number say nothing.
+`zspring en50318` it stands under the parameters of the catenary, whose first support is at 0 m, or where all its spans
+begin and end does; where the far end begins to tell stands beside it. Values that begin with no number say nothing.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from ..errors import ZSpringError
 from ..units import UnitError, conversion
 
 UNDISTURBED = "pantograph {} undisturbed until"
+BOUNDARIES = "catenary span boundaries"
 SAME_SPEED = 0.02  # relative: speeds closer than this are one speed
 _OUR_SPAN, _OUR_SPANS = "catenary line.span", "catenary line.spans"
 _VALUE = re.compile(r"([-+]?\d+(?:\.\d+)?)(?:\s+(\S.*))?")
@@ -30,6 +31,7 @@ class Stated:
     first_support: float | None = None  # m, where span 1 begins
     speed: float | None = None  # m/s
     undisturbed_until: float | None = None  # m, by the far end: see waves.py
+    boundaries: tuple[float, ...] | None = None  # m, of the spans, of a line by file
 
     @classmethod
     def in_head(cls, path: Path, head: Mapping[str, str], pantograph: int = 1) -> Stated:
@@ -44,13 +46,15 @@ class Stated:
                         raise ZSpringError(f"{path}, # {key}: {error}") from None
             return None
 
-        spans, is_ours = value("1", "spans", _OUR_SPANS), _OUR_SPAN in head
+        spans, is_ours = value("1", "spans", _OUR_SPANS), _OUR_SPAN in head or BOUNDARIES in head
+        boundaries = tuple(map(float, head[BOUNDARIES].split()[:-1])) if BOUNDARIES in head else None
         return cls(
             span=value("m", "span", _OUR_SPAN),
             spans=None if spans is None else int(spans),
             first_support=0.0 if is_ours else value("m", "first support"),
             speed=value("m/s", "speed"),
             undisturbed_until=value("m", UNDISTURBED.format(pantograph)),
+            boundaries=boundaries,
         )
 
 
