@@ -9,13 +9,15 @@ lengths as they are:
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.sparse import csr_matrix, vstack
 
 from catenary_line import Banded, Line, Wire, complementarity, hermite
+from zspring import line_table
 from zspring.line_table import LineTable
 
 
@@ -210,3 +212,59 @@ class AnyLine(Line):
 def dense(matrix):
     inverse = np.linalg.inv(matrix.toarray())
     return lambda right: inverse @ right
+
+
+# Lines of every kind
+
+
+def table(supports, droppers=(), stitches=(), masses=(), profile=(), ends=(0.0, 0.0)) -> LineTable:
+    """Rows as in the file; a dropper: (x, upper, height) and what of the others is not usual, by name."""
+    usual = {"stiffness": 1e5, "mass": 0.117, "clamp_contact": 0.165, "clamp_upper": 0.195}
+    hangers = np.zeros(len(droppers), line_table.DROPPER)
+    for row, (x, upper, height, *others) in zip(hangers, droppers):
+        for name, value in ({"x": x, "upper": upper, "height": height} | usual | (others[0] if others else {})).items():
+            row[name] = value
+    kinds = line_table.STITCH, line_table.POINT_MASS, line_table.PROFILE
+    rest = (np.array(list(rows), kind) for rows, kind in zip((stitches, masses, profile), kinds))
+    return LineTable(np.array(list(supports), line_table.SUPPORT), ends, hangers, *rest)
+
+
+def supported(*x: float, messenger: Callable[[float], float] = lambda x: 1.3, arm=(0.3, 300.0)) -> list[tuple]:
+    inner = [(place, messenger(place), 5e5, *arm) for place in x[1:-1]]
+    return [(x[0], messenger(x[0]), 0, 0, 0), *inner, (x[-1], messenger(x[-1]), 0, 0, 0)]
+
+
+UNLIKE = table(
+    supported(0, 48, 113, 154, 215, messenger=lambda x: 1.3 + 0.001 * x + 0.05 * (x == 113)),
+    [
+        (x, 0, 0.001 * x - 0.0005 * min(x - a, b - x))
+        for a, b, n in ((0, 48, 5), (48, 113, 8), (113, 154, 3), (154, 215, 7))
+        for x in np.linspace(a + 3.7, b - 4.1, n)
+    ],
+    masses=[(60.0, 0, 6.5), (113, 0, 2.0), (131.3, 1, 9.0), (172.0, 0, 3.0)],
+    ends=(0.0, 0.215),
+)
+STITCHED = table(
+    supported(0, 55, 120, 180, 235, messenger=lambda x: 1.6),
+    [
+        (x, float(any(abs(x - s) < 9 for s in (55, 120, 180))), 0.0)
+        for s, e in ((0, 55), (55, 120), (120, 180), (180, 235))
+        for x in (s + 2.6, *np.linspace(s + 11, e - 11, 5), e - 2.6)
+    ],
+    stitches=[(s - 9.0, s + 9.0, 2800.0, 0.31, 0.4) for s in (55, 120, 180)],
+)
+_WRONG = np.random.default_rng(3).normal(0, 0.004, 24)
+IRREGULAR = replace(
+    UNLIKE,
+    droppers=np.array(
+        [
+            (*row.tolist()[:8], 0, wrong + (10.0 if i == 9 else 0))
+            for i, (row, wrong) in enumerate(zip(UNLIKE.droppers, _WRONG))
+        ],
+        line_table.DROPPER,
+    ),
+    profile=np.array(
+        [(x, 0.002 * np.sin(x / 3), 0.002 / 3 * np.cos(x / 3)) for x in np.arange(20, 200, 1.7)], line_table.PROFILE
+    ),
+)
+LINES = {"unlike spans": UNLIKE, "stitched": STITCHED, "irregular": IRREGULAR}

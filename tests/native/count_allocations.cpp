@@ -1,7 +1,7 @@
 // Counts heap allocations inside fmi2DoStep of a built FMU.
 //
-//   count_allocations LIBRARY GUID STEP COUNT [rVR=VALUE | iVR=VALUE ...]   sets Reals and Integers
-//   (enumerations), then runs COUNT steps of STEP s and prints the allocations in all fmi2DoStep calls and, to
+//   count_allocations LIBRARY GUID RESOURCES STEP COUNT [rVR=VALUE | iVR=VALUE ...]   sets Reals and
+//   Integers (enumerations), then runs COUNT steps of STEP s and prints the allocations in all fmi2DoStep calls and, to
 //   show that counting works, in one fmi2Instantiate.
 #include <dlfcn.h>
 
@@ -52,18 +52,18 @@ Function* load(void* library, const char* name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 5) return 2;
+  if (argc < 6) return 2;
   void* library = dlopen(argv[1], RTLD_NOW);
   if (!library) return 3;
-  const double step = std::atof(argv[3]);
+  const double step = std::atof(argv[4]);
   const fmi2CallbackFunctions callbacks{log, nullptr, nullptr, nullptr, nullptr};
 
   long before = allocations;
   fmi2Component c =
-      load<fmi2InstantiateTYPE>(library, "fmi2Instantiate")("p", fmi2CoSimulation, argv[2], "", &callbacks, 0, 0);
+      load<fmi2InstantiateTYPE>(library, "fmi2Instantiate")("p", fmi2CoSimulation, argv[2], argv[3], &callbacks, 0, 0);
   const long in_instantiate = allocations - before;
   if (!c) return 4;
-  for (int i = 5; i < argc; ++i) {
+  for (int i = 6; i < argc; ++i) {
     char type;
     unsigned vr;
     double real;
@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
 
   auto* do_step = load<fmi2DoStepTYPE>(library, "fmi2DoStep");
   long in_steps = 0;
-  for (int i = 0; i < std::atoi(argv[4]); ++i) {
+  for (int i = 0; i < std::atoi(argv[5]); ++i) {
     before = allocations;
     const fmi2Status status = do_step(c, i * step, step, fmi2True);
     in_steps += allocations - before;
