@@ -40,13 +40,19 @@ NEEDED = ("distributed", "SALib", "pyarrow")
     kind=POSITIVE,
     help="Longest wait in s for the scheduler, and for a worker when there is none.",
 )
+@option(
+    "--line-of",
+    kind=click.IntRange(min=0),
+    metavar="CASE",
+    help="Only write the line of this case as line-CASE.fmu, an FMU of the catenary, for `zspring couple --line-fmu`.",
+)
 @click.option(
     "--parquet", is_flag=True, help="Write the results as study.parquet, too, from time to time and at the end."
 )
 @format_option
 @fmu_option
 @line_fmu_option
-def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path, line_fmu) -> None:
+def study(file, output, scheduler, workers, timeout, line_of, parquet, suffix, fmu_path, line_fmu) -> None:
     """Run the parameter study that the TOML file FILE describes.
 
     \b
@@ -66,15 +72,18 @@ def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path, 
         [static]                   # ... and/or the static stiffness of the suspension ...
         amplitudes = [0.02]        # m
         [couple]                   # ... and/or a run along a line (options of `zspring couple`)
-        line = "en-50318-2002"     # a set or an SSV file
+        line = "line.toml"         # a line file, a set or an SSV file
         speed = 250                # km/h
         spans = [4, 6]             # to evaluate
-        [compare]                  # each run by all of these, with [couple] alone
+        [irregularity]             # each run along all of these lines, with a line file
+        lines = 30
+        dropper_length = 0.003     # m, standard deviation
+        [compare]                  # each run by all of these, with [couple]
         "Z-spring" = {}
         "rods held" = { suspension = "LinearLocked" }
 
     With [couple] the line's parameters vary as catenary.NAME, what the run is given as couple.speed, couple.spacing
-    and so on.
+    and so on, irregularities as irregularity.dropper_length.
 
     A grid takes values ([1, 2, 3] or a range with its count) and makes all combinations; a list takes the
     first value of each parameter, then the second of each, and so on.
@@ -85,8 +94,11 @@ def study(file, output, scheduler, workers, timeout, parquet, suffix, fmu_path, 
     absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if absent:
         raise missing_extra(absent, "study")
-    from .run import Place, run_study
+    from .run import Place, run_study, write_line
 
     folder = output or Path("results") / f"study-{file.stem}"
     with opened(fmu_path) as fmu, opened(line_fmu or installed_fmu(CATENARY)) as catenary, claimed(folder):
-        run_study(fmu, catenary, file, folder, Place(scheduler, workers, timeout), suffix, parquet)
+        if line_of is not None:
+            write_line(fmu, catenary, file, folder, line_of)
+        else:
+            run_study(fmu, catenary, file, folder, Place(scheduler, workers, timeout), suffix, parquet)

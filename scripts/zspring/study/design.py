@@ -9,7 +9,8 @@ import numpy as np
 
 from ..errors import ZSpringError
 from ..variables import Value
-from .file import MOST_CASES, Range
+from .factors import LINE_NUMBER
+from .file import MOST_CASES, SAMPLED, Range
 from .settings import COMPARED, StudySettings
 
 Case = dict[str, Value]  # values of the parameters that vary
@@ -23,10 +24,20 @@ def make_cases(settings: StudySettings) -> list[Case]:
     latin-hypercube     McKay, Beckman, Conover 1979, as scipy.stats.qmc has it
     sobol               Saltelli et al. 2010 on a scrambled Sobol sequence, as SALib has it: blocks of D + 2
                         cases, from which first and total order indices follow
-    Each of them for all that are compared. Raises ZSpringError if there are more than MOST_CASES.
+    Those of a grid or list on each of the lines, case n of others on line n, a whole block of sobol on one, beginning
+    anew after the last line; and each for all that are compared.
+    Raises ZSpringError if there are more than MOST_CASES.
     """
     compared = [{COMPARED: i + 1} for i in range(len(settings.compared))] or [{}]
-    cases = _designed(settings, len(compared))
+    lines = [{LINE_NUMBER: i + 1} for i in range(settings.lines)] or [{}]
+    if settings.design in SAMPLED:
+        block = len(settings.vary) + 2 if settings.design == "sobol" else 1
+        cases = [
+            {**case, **lines[n // block % len(lines)]} for n, case in enumerate(_designed(settings, len(compared)))
+        ]
+    else:
+        each = _designed(settings, len(lines) * len(compared))
+        cases = [{**case, **line} for case in each for line in lines]
     return [{**case, **which} for case in cases for which in compared]
 
 

@@ -17,7 +17,7 @@ from ..bench.measure import BENCH_PARAMETERS
 from ..errors import ZSpringError
 from ..line.journey import MOST_PANTOGRAPHS
 from ..variables import Value, Variables
-from .coupled import CHOICES, COUPLE, LINE
+from .coupled import CHOICES, COUPLE, IRREGULARITY, LINE
 
 SET_BY_THE_RUN = ("travel", "exchange", "exchange.step")  # of the catenary
 # Numbers that a run can be given: unit, smallest and largest value; limits that hang on others are left to the run.
@@ -29,6 +29,18 @@ NUMBERS: dict[str, tuple[str, str | None]] = {
     "uplift": ("N", None),
     "step": ("s", "0"),
 }
+# How a line may differ from its design: unit, largest value; the smallest is 0.
+IRREGULARITIES: dict[str, tuple[str, str | None]] = {
+    "dropper_length": ("m", "0.5"),
+    "missing": ("1", "1"),
+    "slack": ("1", "1"),
+    "slack_by": ("m", "0.5"),
+    "clamp_mass": ("1", "0.33"),
+    "contact_tension": ("1", "0.3"),
+    "messenger_tension": ("1", "0.3"),
+    "contact_wire": ("m", "0.1"),
+}
+LINE_NUMBER = f"{IRREGULARITY}line"
 
 
 def own_variable(name: str, kind: str = "Real", **fields: Any) -> ScalarVariable:
@@ -57,7 +69,9 @@ def factors(pantograph: Variables, catenary: Variables | None) -> Variables:
     run = [own_variable(COUPLE + name, unit=unit, min=least) for name, (unit, least) in NUMBERS.items()]
     run.append(own_variable(f"{COUPLE}pantographs", "Integer", min="1", max=str(MOST_PANTOGRAPHS)))
     run += [choice_variable(COUPLE + name, items) for name, items in CHOICES.items()]
-    return Variables([*pantograph, *line, *run])
+    for name, (unit, most) in IRREGULARITIES.items():
+        run.append(own_variable(IRREGULARITY + name, unit=unit, min="0", max=most))
+    return Variables([*pantograph, *line, *run, own_variable(LINE_NUMBER, "Integer", min="1")])
 
 
 def is_set_by_the_run(name: str) -> bool:

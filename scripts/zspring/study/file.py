@@ -10,12 +10,12 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, Str
 
 from ..bench.points import FrfSettings
 from ..bench.steady import LOOK_PERIODS
-from ..line.statistics import FIGURES
+from ..line.quantities import FIGURES, FREE, is_figure
 from ..options import Numbers
 from ..parameter_sets import LINES, PANTOGRAPHS
 from ..settings import ALL_FREQUENCIES, Band, BesidePath, Positive, Table, by_full_name, fitting, set_name
 from .evaluations import FrfQuantity, StaticQuantity
-from .factors import run_keys
+from .factors import IRREGULARITIES, run_keys
 
 SAMPLED = ("latin-hypercube", "sobol")
 MOST_CASES = 1_000_000
@@ -74,11 +74,16 @@ Spans = Annotated[
     Strict(False),
     fitting("must be [first, last] span, counted from 1", lambda spans: 1 <= spans[0] <= spans[1]),
 ]
+Wavelengths = Annotated[
+    tuple[float, float],
+    Strict(False),
+    fitting("must be [shortest, longest] wave in m", lambda waves: 0.1 <= waves[0] < waves[1] < 1e6),
+]
 Figures = Annotated[
     tuple[str, ...],
     Strict(False),
     Field(min_length=1),
-    fitting(f"must be some of {', '.join(FIGURES)}", lambda names: set(names) <= set(FIGURES)),
+    fitting(f"must be some of {', '.join(FIGURES)}, {FREE}", lambda names: all(map(is_figure, names))),
 ]
 
 
@@ -131,6 +136,30 @@ _run_keys: Any = dict.fromkeys(run_keys(), (Any, None))
 _Couple: Any = create_model("_Couple", __base__=_CoupleOwn, **_run_keys)
 
 
+class _IrregularityOwn(Table):
+    """How many lines, and what their contact wires have in common."""
+
+    lines: int = Field(ge=1)
+    seed: int = Field(1, ge=0)
+    wavelengths: Wavelengths | None = Field(None, description="m, of a spectrum that falls with the wavenumber ...")
+    exponent: float | None = Field(None, description="... to the power of -exponent")
+    spectrum: BesidePath | None = None
+    profile: BesidePath | None = None
+
+    @model_validator(mode="after")
+    def _one_source(self) -> _IrregularityOwn:
+        given = [key for key in ("wavelengths", "spectrum", "profile") if getattr(self, key) is not None]
+        if len(given) > 1:
+            raise ValueError(f"{' and '.join(given)}: give one of them")
+        if (self.wavelengths is None) != (self.exponent is None):
+            raise ValueError("wavelengths and exponent: both make a spectrum, one alone does not")
+        return self
+
+
+_irregularity_keys: Any = dict.fromkeys(IRREGULARITIES, (Any, None))
+_Irregularity: Any = create_model("_Irregularity", __base__=_IrregularityOwn, **_irregularity_keys)
+
+
 class StudyFile(Table):
     """The file."""
 
@@ -144,6 +173,7 @@ class StudyFile(Table):
     frf: _Frf | None = None
     static: _Static | None = None
     couple: _Couple | None = None
+    irregularity: _Irregularity | None = None
     compare: dict[str, Annotated[dict[str, Any], by_full_name()]] = Field({})
 
     @model_validator(mode="after")
@@ -159,10 +189,11 @@ class StudyFile(Table):
             raise ValueError("draws: needs design list")
         if self.draws and self.vary:
             raise ValueError("draws: must be given without [vary]")
-        if not self.draws and not self.vary and not (self.compare and self.design == "grid"):
+        if not (self.draws or self.vary or (self.design == "grid" and (self.compare or self.irregularity))):
             raise ValueError("[vary]: needs at least one")
-        if self.compare and not self.couple:
-            raise ValueError("[compare]: needs [couple]")
+        for table in ("compare", "irregularity"):
+            if getattr(self, table) and not self.couple:
+                raise ValueError(f"[{table}]: needs [couple]")
         if self.compare and self.design == "sobol":
             raise ValueError("[compare]: needs another design than sobol")
         for name in self.vary:

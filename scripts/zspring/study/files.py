@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+from fmpy.model_description import ScalarVariable
 
 from ..records import Record
 from ..tables import replaced
@@ -92,6 +93,11 @@ class ParquetCopy:
     def write_if_due(self) -> None:
         if time.monotonic() >= self._next:
             self.write()
+
+
+def column_of(variable: ScalarVariable) -> str:
+    """Column of what varies."""
+    return variable.name + ("" if variable.unit in (None, "1") else f" [{variable.unit}]")
 
 
 def values(rows: Rows, name: str) -> np.ndarray:

@@ -10,7 +10,7 @@ from ..fmu import Fmu
 from ..heads import file_head
 from ..line.run import LineRun
 from ..variables import Value, text
-from .coupled import COUPLE, LINE, CoupledQuantity, system_of
+from .coupled import COUPLE, IRREGULARITY, LINE, CoupledQuantity, pantograph_parameters, system_of
 from .design import Case
 from .evaluations import Quantity
 from .factors import is_set_by_the_run
@@ -35,9 +35,8 @@ def first_start(settings: StudySettings, cases: Sequence[Case], fmu: Fmu, catena
     with fmu.instances() as (instance,):
         for case in cases:
             given = settings.parameters_of(case)
-            own = {name: value for name, value in given.items() if not name.startswith((LINE, COUPLE))}
             try:
-                instance.start(own)
+                instance.start(pantograph_parameters(given))
                 names = [name for name in fmu.variables.names("parameter") if not name.startswith("bench.")]
                 parameters = dict(zip(names, instance.get(names)))
                 return Start(parameters, _line(settings.quantities, fmu, catenary, given))
@@ -47,12 +46,15 @@ def first_start(settings: StudySettings, cases: Sequence[Case], fmu: Fmu, catena
 
 
 def _line(quantities: Sequence[Quantity], fmu: Fmu, catenary: Fmu, given: Mapping[str, Value]) -> dict[str, str]:
-    if not any(isinstance(quantity, CoupledQuantity) for quantity in quantities):
+    quantity = next((each for each in quantities if isinstance(each, CoupledQuantity)), None)
+    if quantity is None:
         return {}
-    system, _ = system_of(fmu, catenary, given)
-    with LineRun(system) as run:
-        own = {name.removeprefix("catenary "): value for name, value in run.settings.items() if "catenary " in name}
-        return {f"catenary {name}": value for name, value in own.items() if not is_set_by_the_run(name)}
+    design = {name: value for name, value in given.items() if not name.startswith(IRREGULARITY)}
+    with quantity.on_line(catenary, design) as (on_line, parameters):
+        system, _ = system_of(fmu, on_line, parameters)
+        with LineRun(system) as run:
+            own = {name.removeprefix("catenary "): value for name, value in run.settings.items() if "catenary " in name}
+            return {f"catenary {name}": value for name, value in own.items() if not is_set_by_the_run(name)}
 
 
 def study_head(settings: StudySettings, start: Start, fmu: Fmu, catenary: Fmu, cases: int) -> dict[str, str]:
@@ -64,7 +66,7 @@ def study_head(settings: StudySettings, start: Start, fmu: Fmu, catenary: Fmu, c
     own |= {
         name.replace(".", " ", 1): text(settings.variables[name], value)
         for name, value in settings.common.items()
-        if name.startswith(COUPLE) and settings.is_common(name)
+        if name.startswith((COUPLE, IRREGULARITY)) and settings.is_common(name)
     }
     line = {name: value for name, value in start.line.items() if settings.is_common(name.replace("catenary ", LINE, 1))}
     common = {name: value for name, value in start.parameters.items() if settings.is_common(name)}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import re
 import warnings
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -128,6 +128,9 @@ def write_sobol(path: Path, head: Mapping[str, str], settings: StudySettings, fo
 
 
 def remarks(rows: Rows) -> list[str]:
-    """Lines with what results must not be read without, and of how many cases."""
-    found = Counter(row[REMARKS] for row in rows.values() if row.get(REMARKS))
-    return [f"{count} cases: {remark}" if count > 1 else f"1 case: {remark}" for remark, count in found.items()]
+    """Lines with what results must not be read without, the first of those alike, and of how many cases."""
+    found: dict[str, list[str]] = {}  # alike but for their numbers
+    for row in rows.values():
+        if remark := row.get(REMARKS):
+            found.setdefault(re.sub(r"\d+(\.\d+)?", "", remark), []).append(remark)
+    return [f"1 case: {alike[0]}" if len(alike) == 1 else f"{len(alike)} cases: {alike[0]}" for alike in found.values()]

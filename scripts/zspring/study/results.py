@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
 from ..figures import save
 from . import report
+from .compare import conditions, difference_table, differences, write_differences
 from .coupled import CoupledQuantity
+from .design import Case
 from .evaluations import FrfQuantity
 from .files import Rows, StudyRecord
-from .line_plot import distribution_figure
+from .line_plot import correlation_figure, difference_figure, distribution_figure, sweep_figure
 from .plot import envelope_figure, sobol_figure
+from .sensitivity import correlation_doubts, correlation_table, correlations, parameters_of, write_correlations
 from .settings import COMPARED, StudySettings
 
 
@@ -23,8 +27,9 @@ class Written:
     suffix  of the figures
     """
 
-    def __init__(self, settings: StudySettings, record: StudyRecord, note: str, suffix: str):
-        self._settings, self._record, self._rows, self._suffix = settings, record, record.rows, suffix
+    def __init__(self, settings: StudySettings, cases: Sequence[Case], record: StudyRecord, note: str, suffix: str):
+        self._settings, self._cases, self._record, self._suffix = settings, cases, record, suffix
+        self._rows = record.rows
         varied = ", ".join(settings.vary) or ", ".join(settings.compared)
         self._title = f"Parameter study, {settings.design}, of {varied}{note}"
         self.paths = [record.path]
@@ -33,15 +38,14 @@ class Written:
         """Write them; the lines to print."""
         lines: list[str] = []
         scalars = [name for quantity in self._settings.quantities for name in quantity.scalars]
-        for name, rows in self._compared().items():
-            lines += [name] if name else []
-            lines += report.spread_table(scalars, rows)
+        if not self._settings.compared:
+            lines += report.spread_table(scalars, self._rows)
         for quantity in self._settings.quantities:
             if isinstance(quantity, FrfQuantity):
                 figure = envelope_figure(report.envelopes(quantity, self._rows), len(self._rows), self._title)
                 self._save(figure, "envelope")
             if isinstance(quantity, CoupledQuantity):
-                self._save(distribution_figure(quantity, self._compared(), self._title), "distribution")
+                lines += self._on_line(quantity)
         if self._settings.design == "sobol":
             lines += self._sobol(scalars)
         return lines
@@ -54,6 +58,29 @@ class Written:
             name: {number: row for number, row in self._rows.items() if row[COMPARED] == name}
             for name in self._settings.compared
         }
+
+    def _on_line(self, quantity: CoupledQuantity) -> list[str]:
+        settings, cases, title, lines = self._settings, self._cases, self._title, list[str]()
+        self._save(distribution_figure(quantity, self._compared(), title), "distribution")
+        if conditions(settings):
+            self._save(sweep_figure(settings, quantity, cases, self._rows, title), "sweep")
+        if len(settings.compared) > 1 and (found := differences(settings, quantity, cases, self._rows)):
+            lines += difference_table(settings, found)
+            write_differences(self._path("differences.csv"), self._record.head, settings, found)
+            self._save(difference_figure(settings, cases, found, title), "differences")
+        parameters = parameters_of(settings, self._rows)
+        if settings.design in ("latin-hypercube", "list") and parameters:
+            every = {
+                name: correlations(settings, parameters, quantity.scalars, rows)
+                for name, rows in self._compared().items()
+            }
+            for name, own in every.items():
+                lines += [*([name] if name else []), *correlation_table(parameters, own)]
+            if together := [each for own in every.values() for each in own]:
+                lines += correlation_doubts(together)
+                write_correlations(self._path("correlations.csv"), self._record.head, parameters, every)
+                self._save(correlation_figure(every, parameters, title), "correlations")
+        return lines
 
     def _sobol(self, scalars: list[str]) -> list[str]:
         settings, lines = self._settings, list[str]()

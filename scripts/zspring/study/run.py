@@ -9,14 +9,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import ZSpringError, tell
+from ..exported_fmu import Copy
 from ..fmu import Fmu
 from ..heads import now, synthetic_note
 from ..records import fill
+from ..tables import replaced
 from ..variables import Variables, text
 from .connection import connected
-from .coupled import REMARKS
+from .coupled import LINE, REMARKS, CoupledQuantity, those_of
 from .design import Case, make_cases
-from .files import STATUS, ParquetCopy, Row, StudyRecord
+from .files import STATUS, ParquetCopy, Row, StudyRecord, column_of
 from .head import first_start, study_head
 from .report import remarks
 from .results import Written
@@ -68,7 +70,7 @@ def run_study(
         needed = catenary if start.line else None
         speed = _measure(fmu, needed, settings, missing, record, len(cases), place, parquet)
     record.finish()
-    written = Written(settings, record, synthetic_note(fmu, start.parameters), suffix)
+    written = Written(settings, cases, record, synthetic_note(fmu, start.parameters), suffix)
     lines = written.all()
     if parquet:
         parquet.write()
@@ -81,6 +83,22 @@ def run_study(
         raise ZSpringError(f"{len(lost)} cases were lost with their workers; the same command runs them again")
     if len(failed) == len(cases):
         raise ZSpringError(f"all {len(cases)} cases failed")
+
+
+def write_line(fmu: Fmu, catenary: Fmu, path: Path, folder: Path, number: int) -> None:
+    """The line of a case of the study at `path` as an FMU. Raises ZSpringError where there is no such case."""
+    settings = read_study(path, fmu, catenary)
+    cases = make_cases(settings)
+    quantity = next((each for each in settings.quantities if isinstance(each, CoupledQuantity)), None)
+    if quantity is None:
+        raise ZSpringError("--line-of: the study has no [couple]")
+    if number >= len(cases):
+        raise ZSpringError(f"--line-of {number}: must be in 0 .. {len(cases) - 1}")
+    target = folder / f"line-{number}.fmu"
+    with quantity.on_line(catenary, settings.parameters_of(cases[number])) as (on_line, parameters):
+        with replaced(target) as unfinished:
+            Copy(starts=those_of(LINE, parameters)).write(on_line, unfinished)
+    print("written:", target)
 
 
 def _measure(
@@ -124,9 +142,4 @@ def _measure(
 
 def _texts(variables: Variables, case: Case) -> dict[str, str]:
     """Columns and texts of a case."""
-    texts = {}
-    for name, value in case.items():
-        variable = variables[name]
-        unit = "" if variable.unit in (None, "1") else f" [{variable.unit}]"
-        texts[name + unit] = text(variable, value)
-    return texts
+    return {column_of(variables[name]): text(variables[name], value) for name, value in case.items()}

@@ -11,14 +11,21 @@ from ..bench.measure import BENCH_PARAMETERS
 from ..draws import read_draws
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..parameter_sets import ACCURATE_STEP, LINES, PANTOGRAPHS, chosen_set, packaged_sets
+from ..line.quantities import points_of
+from ..line.system import most_points
+from ..line_file.chosen import line_of
+from ..line_table import LineTable
+from ..parameter_sets import ACCURATE_STEP, PANTOGRAPHS, chosen_set, packaged_sets
 from ..settings import named, settings_of
 from ..variables import Value, Variables, text
-from .coupled import COUPLE, LINE, CoupledQuantity
+from .coupled import COUPLE, IRREGULARITY, LINE, CoupledQuantity
 from .evaluations import Quantity
-from .factors import SET_BY_THE_RUN, choice_variable, factors, run_keys, value_of
+from .factors import IRREGULARITIES, LINE_NUMBER, SET_BY_THE_RUN, choice_variable, factors, run_keys, value_of
 from .file import SAMPLED, Range, StudyFile
+from .irregular import Irregularity
+from .roughness import roughness_of
 
+_SLACK = {f"{IRREGULARITY}slack", f"{IRREGULARITY}slack_by"}
 COMPARED = "compare"  # name of what tells which of the compared a case is
 Parameters = dict[str, Value]
 
@@ -35,11 +42,12 @@ class StudySettings:
     quantities: tuple[Quantity, ...]
     compared: Mapping[str, Parameters] = field(default_factory=dict)  # by name, in place of `common`; or none
     variables: Variables = field(default_factory=lambda: Variables([]))  # of all that can vary
+    lines: int = 0  # irregular ones; 0: that of the design alone
 
     @property
     def names(self) -> list[str]:
         """Of what differs between cases."""
-        return [*self.vary, *([COMPARED] if self.compared else [])]
+        return [*self.vary, *([LINE_NUMBER] if self.lines else []), *([COMPARED] if self.compared else [])]
 
     def parameters_of(self, case: Mapping[str, Value]) -> Parameters:
         """All that a case is given."""
@@ -63,6 +71,8 @@ class StudySettings:
             head[f"compare {name}"] = " ".join(
                 f"{key}={text(self.variables[key], value)}" for key, value in own.items()
             )
+        if self.lines:
+            head["irregular lines"] = str(self.lines)
         for quantity in self.quantities:
             head |= quantity.described()
         return head
@@ -93,8 +103,18 @@ def read_study(path: Path, fmu: Fmu, catenary: Fmu | None = None) -> StudySettin
             if file.draws:
                 given = _by_parameter(read_draws(file.draws, fmu, (*BENCH_PARAMETERS, *common)))
             vary = {name: _varied(variables, name, value, file.design) for name, value in given.items()}
+        line, irregularity = None, None
         if file.couple and catenary:
-            common = {**_of_run(file.couple, catenary, variables, vary), **common}
+            line, of_line = _line(file.couple.line, catenary, vary)
+            if len(points_of(file.couple.figures)) > (most := most_points(catenary)):
+                raise ZSpringError(f"[couple] figures: uplift_at is told of {most} points at most")
+            of_run = _tabled("couple", file.couple, run_keys(), variables, vary)
+            if f"{COUPLE}static_law" in {*of_run, *vary} and "static_force" in {*common, *vary}:
+                raise ZSpringError("static_force and [couple] static_law: give one of them")
+            common = {**of_line, **of_run, **common}
+            if file.irregularity:
+                irregularity, of_it = _irregularity(file.irregularity, line, variables, vary)
+                common = {**of_it, **common}
         sets = _Sets(fmu, path.parent, (*BENCH_PARAMETERS, *vary), common)
         compared = {}
         for name, assigned in file.compare.items():
@@ -108,10 +128,11 @@ def read_study(path: Path, fmu: Fmu, catenary: Fmu | None = None) -> StudySettin
         whole = sets.whole(file.parameter_set)
         if file.couple:
             most = _most(f"{COUPLE}pantographs", vary, [whole, *compared.values()])
-            quantities += (CoupledQuantity(file.couple.figures, most, file.couple.spans),)
+            quantities += (CoupledQuantity(file.couple.figures, most, file.couple.spans, line, irregularity),)
         if compared:
             variables = Variables([*variables, choice_variable(COMPARED, compared)])
-        return StudySettings(file.design, file.samples, file.seed, vary, whole, quantities, compared, variables)
+        lines = file.irregularity.lines if file.irregularity else 0
+        return StudySettings(file.design, file.samples, file.seed, vary, whole, quantities, compared, variables, lines)
 
 
 @dataclass(frozen=True)
@@ -144,19 +165,47 @@ class _Sets:
         return {**self.whole(own), **{name: value_of(variables, name, value) for name, value in given.items()}}
 
 
-def _of_run(couple: Any, catenary: Fmu, variables: Variables, vary: Mapping[str, Any]) -> Parameters:
-    """Parameters of the line and of the run as [couple] has them."""
+def _line(name: str, catenary: Fmu, vary: Mapping[str, Any]) -> tuple[LineTable | None, Parameters]:
+    """The table of a line file, if it is one, and the parameters of the line."""
+    line = line_of(name, catenary, SET_BY_THE_RUN)
+    own = {LINE + key: value for key, value in line.parameters.items()}
+    return line.catenary.line, {key: value for key, value in own.items() if key not in vary}
+
+
+def _tabled(table: str, given: Any, keys: Sequence[str], variables: Variables, vary: Mapping[str, Any]) -> Parameters:
+    """What a table gives of what can vary."""
     values: Parameters = {}
-    if couple.line:
-        found = chosen_set(couple.line, catenary, LINES, SET_BY_THE_RUN)
-        values = {LINE + name: value for name, value in found.items() if LINE + name not in vary}
-    with named("[couple] "):
-        for key in run_keys():
-            if (value := getattr(couple, key)) is not None:
-                if COUPLE + key in vary:
-                    raise ZSpringError(f"{key}: must be in [vary] or in [couple], not in both")
-                values[COUPLE + key] = value_of(variables, COUPLE + key, value)
+    with named(f"[{table}] "):
+        for key in keys:
+            if (value := getattr(given, key)) is not None:
+                name = f"{table}.{key}"
+                if name in vary:
+                    raise ZSpringError(f"{key}: must be in [vary] or in [{table}], not in both")
+                values[name] = value_of(variables, name, value)
     return values
+
+
+def _irregularity(
+    given: Any, line: LineTable | None, variables: Variables, vary: Mapping[str, Any]
+) -> tuple[Irregularity, Parameters]:
+    """The distribution of lines, and what the table gives of what can vary."""
+    values = _tabled("irregularity", given, list(IRREGULARITIES), variables, vary)
+    rough, deviation = roughness_of(given)
+    height, told = f"{IRREGULARITY}contact_wire", {*values, *vary}
+    with named("[irregularity] "):
+        if line is None:
+            raise ZSpringError("needs a line file: [couple] line = ..., with the suffix .toml")
+        if height in told and rough is None:
+            raise ZSpringError("contact_wire: needs wavelengths and exponent, a spectrum or a profile")
+        if rough and height not in told:
+            if deviation is None:
+                raise ZSpringError("contact_wire is missing: the standard deviation in m")
+            values[height] = deviation
+        if rough and len(line.profile):
+            raise ZSpringError("contact_wire: the line file has an irregularity of its own")
+        if _SLACK & told not in (set(), _SLACK):
+            raise ZSpringError("slack and slack_by: one alone does nothing")
+    return Irregularity(line, given.seed, rough), values
 
 
 def _most(name: str, vary: Mapping[str, Range | tuple[Value, ...]], sets: Sequence[Parameters]) -> int:

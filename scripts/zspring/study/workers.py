@@ -20,39 +20,12 @@ from distributed.diagnostics.plugin import WorkerPlugin
 from ..errors import ZSpringError
 from ..fmu import Fmu, Instance
 from ..variables import Value
-from .coupled import COUPLE, LINE, CoupledQuantity
+from .coupled import CoupledQuantity, pantograph_parameters
 from .evaluations import Quantity
 
 OK, FAILED = "ok", "failed"
 
 Result = dict[str, Any]  # "status", "seconds" and "CPU", and values by column
-
-
-class KeptFmu(Fmu):
-    """An FMU whose instances serve one case after the other, each in one thread at a time, and are freed with it."""
-
-    def __init__(self, content: bytes, folder: Path):
-        path = folder / f"{hashlib.sha256(content).hexdigest()}.fmu"
-        path.write_bytes(content)
-        super().__init__(path, unpack_in=folder)
-        self._stack, self._lock = ExitStack(), threading.Lock()
-        self._free: list[Instance] = []
-
-    @contextmanager
-    def instances(self, count: int = 1) -> Iterator[list[Instance]]:
-        with self._lock:
-            missing = max(0, count - len(self._free))
-            self._free += self._stack.enter_context(super().instances(missing))
-            taken = [self._free.pop() for _ in range(count)]
-        try:
-            yield taken
-        finally:
-            with self._lock:
-                self._free += taken
-
-    def close(self) -> None:
-        self._stack.close()
-        super().close()
 
 
 class StudyPlugin(WorkerPlugin):
@@ -71,7 +44,12 @@ class StudyPlugin(WorkerPlugin):
     def setup(self, worker: Worker) -> None:
         folder = Path(worker.local_directory)
         self._stack = ExitStack()
-        self._fmus = [self._stack.enter_context(KeptFmu(content, folder)) for content in self._contents]
+        self._fmus: list[Fmu] = []
+        for content in self._contents:
+            path = folder / f"{hashlib.sha256(content).hexdigest()}.fmu"
+            path.write_bytes(content)
+            self._fmus.append(self._stack.enter_context(Fmu(path, unpack_in=folder)))
+        self._free: list[Instance] = []
         self._lock = threading.Lock()
         self._running, self._is_over = 0, False
         for fmu in self._fmus:
@@ -109,9 +87,13 @@ class StudyPlugin(WorkerPlugin):
         if isinstance(quantity, CoupledQuantity):
             pantograph, catenary = self._fmus
             return quantity.measure(pantograph, catenary, parameters)
-        own = {name: value for name, value in parameters.items() if not name.startswith((LINE, COUPLE))}
-        with self._fmus[0].instances() as (instance,):
-            return quantity.measure(instance, own)
+        with self._lock:  # an instance serves one case after the other, each in one thread
+            instance = self._free.pop() if self._free else self._stack.enter_context(self._fmus[0].instances())[0]
+        try:
+            return quantity.measure(instance, pantograph_parameters(parameters))
+        finally:
+            with self._lock:
+                self._free.append(instance)
 
     @contextmanager
     def _busy(self) -> Iterator[None]:

@@ -1,0 +1,336 @@
+"""Lines that are not as designed: their irregularities, that heads share them, what is told of differences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from scipy.signal import periodogram
+from scipy.stats import spearmanr, ttest_rel
+
+from commands import PNG, table, zspring
+from paths import ROOT
+from zspring.errors import ZSpringError
+from zspring.fmu import CATENARY, Fmu, installed_fmu
+from zspring.line_file.design import read_line
+from zspring.line_table import NEVER_PULLS, PROFILE, LineTable
+from zspring.study.compare import Runner, difference_table, differences
+from zspring.study.coupled import CoupledQuantity
+from zspring.study.design import make_cases
+from zspring.study.files import column_of
+from zspring.study.irregular import Irregularity, Roughness
+from zspring.study.sensitivity import correlation_doubts, correlations
+from zspring.study.settings import StudySettings, read_study
+
+LINE = ROOT / "resources/lines/en-50318-2002.toml"
+GRID = f'design = "grid"\n[couple]\nline = "{LINE.as_posix()}"\n'
+Pair = tuple[Fmu, Fmu]
+
+
+@pytest.fixture(scope="module")
+def fmus() -> Iterator[Pair]:
+    with Fmu() as pantograph, Fmu(installed_fmu(CATENARY)) as catenary:
+        yield pantograph, catenary
+
+
+@pytest.fixture(scope="module")
+def design(fmus) -> LineTable:
+    return read_line(LINE, fmus[1]).table
+
+
+def study_of(text: str, fmus: Pair, folder: Path) -> StudySettings:
+    (folder / "study.toml").write_text(text)
+    return read_study(folder / "study.toml", *fmus)
+
+
+# Realisations
+
+
+def test_dropper_lengths_scatter_as_told_and_scale_from_study_to_study(design):
+    """90 droppers of each of 40 lines: a standard deviation to 1 / sqrt(2 x 3600), which is 1.2 %; no mean."""
+    lines = Irregularity(design, seed=3)
+    errors = np.array([lines.line(n, {"dropper_length": 0.004}).droppers["length_error"] for n in range(1, 41)])
+    assert errors.std() == pytest.approx(0.004, rel=0.05) and abs(errors.mean()) < 4 * 0.004 / 60
+    assert len(np.unique(errors)) == errors.size
+    twice = lines.line(7, {"dropper_length": 0.008}).droppers["length_error"]
+    np.testing.assert_allclose(twice, 2 * errors[6], rtol=1e-15)
+    other = Irregularity(design, seed=4).line(7, {"dropper_length": 0.004}).droppers["length_error"]
+    assert not np.any(other == errors[6])
+    unchanged = lines.line(7, {})
+    assert unchanged.content == design.content and unchanged.digest == design.digest
+
+
+def test_one_kind_of_irregularity_leaves_the_others_as_they_are(design):
+    lines = Irregularity(design, seed=1)
+    lengths = lines.line(5, {"dropper_length": 0.004}).droppers["length_error"]
+    more = lines.line(5, {"dropper_length": 0.004, "missing": 0.2, "slack": 0.3, "slack_by": 0.02, "clamp_mass": 0.1})
+    is_missing = more.droppers["length_error"] == NEVER_PULLS
+    by = more.droppers["length_error"] - lengths
+    is_slack = ~is_missing & (np.abs(by - 0.02) < 1e-12)
+    assert is_slack.sum() > 10 and is_missing.sum() > 5
+    np.testing.assert_allclose(by[~is_missing & ~is_slack], 0, atol=1e-15)
+    for name in ("clamp_contact", "clamp_upper"):
+        factor = more.droppers[name] / design.droppers[name]
+        assert factor.std() == pytest.approx(0.1, rel=0.3) and np.all(np.abs(factor - 1) <= 0.3 + 1e-12)
+
+
+def test_shares_and_tensions_are_those_told(design):
+    lines = Irregularity(design, seed=1)
+    numbers = range(1, 201)
+    found = [lines.line(n, {"missing": 0.05}).droppers["length_error"] == NEVER_PULLS for n in numbers]
+    assert np.mean(found) == pytest.approx(0.05, abs=4 * (0.05 * 0.95 / 18000) ** 0.5)
+    tensions = [lines.tensions(n, {"contact_tension": 0.02, "messenger_tension": 0.03}) for n in numbers]
+    both = np.array([[each[f"{wire}.tension"] for wire in ("contact_wire", "messenger")] for each in tensions])
+    np.testing.assert_allclose(both.std(axis=0), [0.02, 0.03], rtol=0.2)
+    assert np.abs(both - 1).max() <= 0.09 + 1e-12 and abs(np.corrcoef(both.T)[0, 1]) < 0.25
+
+
+def test_a_contact_wire_has_the_spectrum_told(design):
+    """Against the mean periodogram of 200 lines, summed over bands of 30 lines of the spectrum or more: to 6 %."""
+    wavenumber = np.geomspace(1 / 60, 1 / 2, 300)
+    spectrum = wavenumber**-2.0
+    spectrum /= np.trapezoid(spectrum, wavenumber)
+    lines = Irregularity(design, 1, Roughness(wavenumber, spectrum))
+    profiles = [lines.line(n, {"contact_wire": 0.002}).profile for n in range(1, 201)]
+    x = profiles[0]["x"]
+    assert x[0] == 0 and x[-1] == pytest.approx(600)
+    k, power = periodogram([each["height"][:-1] for each in profiles], fs=1 / (x[1] - x[0]), detrend=False)
+    for low, high in ((1 / 50, 1 / 20), (1 / 20, 1 / 8), (1 / 8, 1 / 4), (1 / 4, 1 / 2.2)):
+        inside = (k >= low) & (k < high)
+        expected = 0.002**2 * np.interp(k[inside], wavenumber, spectrum).sum()
+        assert power.mean(axis=0)[inside].sum() == pytest.approx(expected, rel=0.06), (low, high)
+    heights = np.array([each["height"] for each in profiles])
+    assert heights.std() == pytest.approx(0.002, rel=0.03)
+
+
+def test_between_its_points_a_contact_wire_is_as_smooth_as_its_waves(design):
+    """The cubic between two points against the wave through many: less than 1 % off where waves are shortest."""
+    wavenumber = np.array([0.45, 0.5])
+    lines = Irregularity(design, 1, Roughness(wavenumber, np.full(2, 20.0)))
+    profile = lines.line(1, {"contact_wire": 0.001}).profile
+    between = profile["x"][50:-50] + 0.37 * (profile["x"][1] - profile["x"][0])
+    cubic = CubicHermiteSpline(profile["x"], profile["height"], profile["slope"])(between)
+    smooth = CubicSpline(profile["x"], profile["height"])(between)
+    assert np.abs(smooth).max() > 5e-4 and np.abs(cubic - smooth).max() < 0.02 * np.abs(smooth).max()
+
+
+def test_a_measured_profile_is_laid_along_each_line_from_another_place(design):
+    x = np.arange(0, 1500, 0.5)
+    measured = np.zeros(len(x), PROFILE)
+    measured["x"], measured["height"], measured["slope"] = x, np.sin(x / 9), np.cos(x / 9) / 9
+    lines = Irregularity(design, 1, Roughness(profile=measured))
+    first, second = (lines.line(n, {"contact_wire": 0.003}).profile for n in (1, 2))
+    for profile in (first, second):
+        assert profile["x"][0] <= 0 < profile["x"][1] and profile["x"][-2] < 600 <= profile["x"][-1]
+        waves = np.column_stack([np.sin(profile["x"] / 9), np.cos(profile["x"] / 9), np.ones(len(profile))])
+        (a, b, _), rest, *_ = np.linalg.lstsq(waves, profile["height"], rcond=None)
+        assert np.hypot(a, b) == pytest.approx(0.003, rel=1e-9) and rest[0] < 1e-20
+    assert abs(first["height"][3] - second["height"][3]) > 1e-5
+    with pytest.raises(ZSpringError, match="profile: 500 m: must be as long as the line at least, 600 m"):
+        Irregularity(design, 1, Roughness(profile=measured[x <= 500])).line(1, {"contact_wire": 0.003})
+
+
+# Studies
+
+
+def test_lines_without_irregularity_are_the_line_of_the_parameters(fmus, tmp_path):
+    """Also between: a case's own tensions reach the FMU."""
+    same = 'design = "grid"\n[couple]\nline = "en-50318-2002"\nspans = [3, 3]\n[vary]\ncouple.speed = [300]\n'
+    by_parameters, by_table = (
+        study_of(same, fmus, tmp_path),
+        study_of(
+            same.replace('"en-50318-2002"', f'"{LINE.as_posix()}"') + "[irregularity]\nlines = 1\n", fmus, tmp_path
+        ),
+    )
+    found = []
+    for settings in (by_parameters, by_table):
+        (quantity,), (case,) = settings.quantities, make_cases(settings)
+        assert isinstance(quantity, CoupledQuantity)
+        found.append(quantity.measure(*fmus, settings.parameters_of(case))[0])
+    assert found[0].keys() == found[1].keys()
+    for name, value in found[0].items():
+        if isinstance(value, float):
+            assert found[1][name] == pytest.approx(value, rel=1e-9, abs=1e-9, nan_ok=True), name
+
+
+def test_each_of_the_compared_runs_along_the_same_lines(fmus, tmp_path):
+    text = GRID + "spans = [3, 3]\n[vary]\ncouple.speed = [250]\n[irregularity]\nlines = 2\ndropper_length = 0.01\n"
+    text += "contact_tension = 0.05\n[compare]\na = {}\nb = { k2 = 9000 }\n"
+    settings = study_of(text, fmus, tmp_path)
+    cases = make_cases(settings)
+    assert [(case["irregularity.line"], case["compare"]) for case in cases] == [(1, 1), (1, 2), (2, 1), (2, 2)]
+    (quantity,) = settings.quantities
+    assert isinstance(quantity, CoupledQuantity)
+    seen = []
+    for case in cases:
+        with quantity.on_line(fmus[1], settings.parameters_of(case)) as (catenary, parameters):
+            assert catenary.line and (catenary.home / "resources/line.table").is_file()
+            seen.append((catenary.line.digest, parameters["catenary.contact_wire.tension"]))
+        assert not catenary.home.exists()
+    assert seen[0] == seen[1] and seen[2] == seen[3] and seen[0] != seen[2]
+    assert 17000 < seen[0][1] < 23000 and seen[0][1] != 20000
+
+
+@pytest.mark.parametrize(
+    "design, expected",
+    [
+        ('design = "latin-hypercube"\nsamples = 5\n[vary]\nm1 = { from = 7, to = 8 }', [1, 2, 3, 1, 2]),
+        ('design = "sobol"\nsamples = 2\n[vary]\nm1 = { from = 7, to = 8 }', [1, 1, 1, 2, 2, 2]),
+        ('design = "grid"\n[vary]\nm1 = [7, 8]', [1, 2, 3, 1, 2, 3]),
+        ('design = "list"\n[vary]\nm1 = [7, 8]', [1, 2, 3, 1, 2, 3]),
+    ],
+)
+def test_which_line_a_case_runs_along(fmus, tmp_path, design, expected):
+    text = f'{design}\n[couple]\nline = "{LINE.as_posix()}"\n[irregularity]\nlines = 3\n'
+    assert [case["irregularity.line"] for case in make_cases(study_of(text, fmus, tmp_path))] == expected
+
+
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        ("lines = 0", r"lines = 0: must be a whole number of at least 1"),
+        ("lines = 3\nmissing = 2", r"irregularity.missing = 2 1: must be at most 1"),
+        ("lines = 3\nslack = 0.1", "slack and slack_by: one alone does nothing"),
+        ("lines = 3\ncontact_wire = 0.001", "contact_wire: needs wavelengths and exponent, a spectrum or a profile"),
+        ("lines = 3\nwavelengths = [1, 50]", "wavelengths and exponent: both make a spectrum"),
+        ("lines = 3\nwavelengths = [1, 50]\nexponent = 2", "contact_wire is missing"),
+        ("lines = 3\nwavelengths = [50, 1]\nexponent = 2", r"wavelengths = \[50, 1\]: must be \[shortest, longest\]"),
+        ('lines = 3\nprofile = "bad.csv"', "bad.csv, line 3: position: must be above that of the row before"),
+        ('lines = 3\nspectrum = "negative.csv"', "negative.csv: wavenumber and spectrum: must be at least 0"),
+        ("lines = 3\nsag = 1", "unknown key 'sag'"),
+    ],
+)
+def test_an_irregularity_that_cannot_be_meant_is_refused_in_one_line(fmus, tmp_path, text, told):
+    (tmp_path / "bad.csv").write_text("position [m],height [mm]\n1,0\n1,1\n")
+    (tmp_path / "negative.csv").write_text("wavenumber [1/m],spectrum [m3]\n0.1,1\n0.2,-1\n")
+    with pytest.raises(ZSpringError, match=told) as refusal:
+        study_of(f"{GRID}[irregularity]\n{text}\n", fmus, tmp_path)
+    assert "\n" not in str(refusal.value)
+
+
+def test_irregular_lines_need_a_line_file(fmus, tmp_path):
+    with pytest.raises(ZSpringError, match=r"\[irregularity\] needs a line file"):
+        study_of('design = "grid"\n[couple]\n[irregularity]\nlines = 2\n', fmus, tmp_path)
+
+
+# What is told of differences
+
+COMPARING = """
+[vary]
+couple.speed = [200, 300]
+m1 = [7, 8]
+[irregularity]
+lines = 12
+[compare]
+a = {}
+b = { k2 = 9000 }
+c = { k2 = 8000 }
+"""
+
+
+def rows_of(settings: StudySettings, value) -> dict[int, dict[str, str]]:
+    """Rows with a standard deviation by case, as texts; NaN: none."""
+    rows = {}
+    for number, case in enumerate(make_cases(settings)):
+        found = value(case)
+        rows[number] = {"standard_deviation [N]": "" if np.isnan(found) else repr(float(found))}
+        rows[number] |= {"compare": list(settings.compared)[case["compare"] - 1]}
+    return rows
+
+
+def test_differences_are_those_of_pairs_on_the_same_lines(fmus, tmp_path):
+    """Student's interval of paired samples, by scipy; a case without a value takes its pair along."""
+    settings = study_of(GRID + 'figures = ["standard_deviation"]\n' + COMPARING, fmus, tmp_path)
+    draws = np.random.default_rng(5)
+    of_line, own = draws.normal(30, 5, 13), draws.normal(0, 1, (2, 2, 3, 13))
+
+    def value(case) -> float:
+        k, line, m = case["compare"] - 1, case["irregularity.line"], int(case["m1"] == 8)
+        if (case["couple.speed"], k, line, m) == (300, 1, 4, 0):
+            return np.nan
+        return of_line[line] + own[int(case["couple.speed"] == 300), m, k, line] + 2 * k
+
+    (quantity,) = settings.quantities
+    assert isinstance(quantity, CoupledQuantity)
+    found = differences(settings, quantity, make_cases(settings), rows_of(settings, value))
+    assert [(d.condition, d.name, d.lines) for d in found] == [
+        ((v, m), name, 11 if (v, m, name) == (300, 7, "b") else 12) for name in "bc" for v in (200, 300) for m in (7, 8)
+    ]
+    for each in found:
+        speed, m = each.condition
+        k = "abc".index(each.name)
+        lines = [n for n in range(1, 13) if not (speed == 300 and m == 7 and n == 4 and k == 1)]
+        a, b = (of_line[lines] + own[int(speed == 300), int(m == 8), i, lines] + 2 * i for i in (0, k))
+        interval = ttest_rel(a, b).confidence_interval(0.95)
+        assert each.runner == Runner(0, 1) and each.first == pytest.approx(a.mean())
+        assert (each.mean - each.half_width, each.mean + each.half_width) == pytest.approx(tuple(interval))
+    lines = difference_table(settings, found)
+    assert "what a has more than the others" in lines[0] and "200 km/h, m1=7" in lines[1]
+    assert f"as {sum(d.is_clear for d in found)} of 8 intervals" in lines[-1]
+
+
+def test_along_one_line_cases_are_one_sample(fmus, tmp_path):
+    """Starts are no parameters of a line: a grid without irregular lines has them as its samples, by speed."""
+    text = 'design = "grid"\n[vary]\ncouple.speed = [200, 300]\ncouple.start = [30, 40, 50]\n[couple]\n'
+    settings = study_of(text + 'figures = ["standard_deviation"]\n[compare]\na = {}\nb = {}\n', fmus, tmp_path)
+    (quantity,) = settings.quantities
+    assert isinstance(quantity, CoupledQuantity)
+    rows = rows_of(settings, lambda case: case["couple.start"] * case["compare"])
+    found = differences(settings, quantity, make_cases(settings), rows)
+    assert [(d.condition, d.lines, d.mean) for d in found] == [((200,), 3, -40), ((300,), 3, -40)]
+
+
+def test_rank_correlations_are_spearmans_and_their_intervals_hold_as_often_as_they_say(fmus, tmp_path):
+    text = 'design = "latin-hypercube"\nsamples = 60\n[vary]\nm1 = { from = 7, to = 8 }\nm2 = { from = 5, to = 6 }\n'
+    settings = study_of(f"{text}[couple]\n", fmus, tmp_path)
+    draws, inside, rho = np.random.default_rng(2), 0, 0.6
+    names = [column_of(settings.variables[name]) for name in ("m1", "m2")]
+    truth = 6 / np.pi * np.arcsin(rho / 2)  # Spearman's of a normal pair
+    for _ in range(400):
+        x, noise, other = draws.normal(size=(3, 60))
+        y = rho * x + (1 - rho**2) ** 0.5 * noise
+        rows = {n: {names[0]: str(x[n]), names[1]: str(other[n]), "y": str(y[n])} for n in range(60)}
+        (found,) = correlations(settings, ["m1", "m2"], ["y"], rows)
+        inside += found.low[0] <= truth <= found.high[0]
+    assert found.value[0] == pytest.approx(spearmanr(x, y).statistic, rel=1e-12)
+    assert 0.92 < inside / 400 < 0.98
+    assert correlation_doubts([found])[0].startswith("1 of 2 rank correlations are smaller")
+    assert correlation_doubts([replace(found, value=np.array([0.6, 0.9]), low=found.low, high=found.high)]) == []
+
+
+def test_a_study_of_irregular_lines_writes_its_tables_and_figures(tmp_path):
+    text = (
+        GRID + 'spans = [3, 3]\nfigures = ["standard_deviation"]\n[vary]\ncouple.speed = [280, 300]\n[irregularity]\n'
+    )
+    text += "lines = 3\ndropper_length = 0.01\n[compare]\nZ = {}\nlocked = { suspension = 'LinearLocked' }\n"
+    (tmp_path / "study.toml").write_text(text)
+    out, err = zspring(tmp_path, "study", "study.toml", "--output", "out", "--workers", "2")
+    zspring(tmp_path, "study", "study.toml", "--output", "out", "--line-of", "10")
+    rows, told = table(tmp_path / "out/study.csv"), table(tmp_path / "out/differences.csv")
+    assert len(rows) == 12 and {row["status"] for row in rows} == {"ok"} and not err
+    for each in told:
+        own = [row for row in rows if row["couple.speed [km/h]"] == each["couple.speed [km/h]"]]
+        a, b = (
+            [float(row["standard_deviation [N]"]) for row in own if row["compare"] == name] for name in ("Z", "locked")
+        )
+        assert float(each["difference"]) == pytest.approx(np.mean(a) - np.mean(b), rel=1e-4)
+        assert each["lines"] == "3" and each["compare"] == "locked"
+    run = ["--line-fmu", "out/line-10.fmu", "--speed", "300", "--stop", "214", "--spans", "3:3", "--output", "run"]
+    couple, _ = zspring(tmp_path, "couple", *run)
+    assert rows[10]["couple.speed [km/h]"] == "300" and rows[10]["irregularity.line"] == "3"
+    assert f"deviation, 0-20 Hz   {float(rows[10]['standard_deviation [N]']):.1f}   N" in couple
+    assert len(told) == 2 and "of 2 intervals of all figures are" in out
+    for name in ("sweep", "differences", "distribution"):
+        assert (tmp_path / f"out/{name}.png").read_bytes().startswith(PNG)
+
+
+def test_what_goes_exactly_with_a_parameter_has_an_interval_that_ends_there(fmus, tmp_path):
+    text = 'design = "latin-hypercube"\nsamples = 9\n[vary]\nm1 = { from = 7, to = 8 }\n[couple]\n'
+    settings = study_of(text, fmus, tmp_path)
+    rows = {n: {column_of(settings.variables["m1"]): str(7 + n / 9), "y": str(-n)} for n in range(9)}
+    (found,) = correlations(settings, ["m1"], ["y"], rows)
+    assert (found.value[0], found.low[0]) == (pytest.approx(-1), found.value[0]) and -1 < found.high[0] < 0
