@@ -12,7 +12,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from platform_runs import RUNS, host_calls
+from platform_runs import RUNS, TABLES, host_calls
 from release_tools import DIST, PLATFORMS, tool
 
 from harness import Fmu
@@ -94,13 +94,19 @@ def emulated(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[...,
         subprocess.run(["wineserver", "--kill"], env=variables)
 
 
+def location(folder: Path, platform: str) -> str:
+    """The URI of a folder, as it is there: wine has the machine's root as drive Z."""
+    return folder.as_uri().replace("file:///", "file:///Z:/" if platform == "win64" else "file:///")
+
+
 @pytest.fixture(scope="session")
-def run(release, host, emulated) -> Callable[..., np.ndarray]:
+def run(release, host, emulated, tmp_path_factory) -> Callable[..., np.ndarray]:
     """run(name in RUNS, platform): Real outputs (times, outputs), computed once.
 
     library     another one than the release's
     """
     known: dict[tuple, np.ndarray] = {}
+    folder = tmp_path_factory.mktemp("lines")
 
     def run_on(name: str, platform: str, library: Path | None = None) -> np.ndarray:
         key = name, platform, library
@@ -108,6 +114,9 @@ def run(release, host, emulated) -> Callable[..., np.ndarray]:
             fmu = release[RUNS[name][0]]
             library = library or next((fmu.folder / "binaries" / platform).iterdir())
             command = [host(platform), library, fmu.description.guid]
+            if name in TABLES:
+                copy = fmu.with_line(TABLES[name].content, folder / f"line über {len(known)} %")
+                command[2:] = [fmu.description.guid + copy.told, location(copy.folder / "resources", platform)]
             lines = emulated(platform, command, host_calls(fmu.description, name)).splitlines()
             values = np.array([np.frombuffer(bytes.fromhex(line), ">f8") for line in lines])
             known[key] = values.astype(float)

@@ -1,6 +1,6 @@
 /* Runs one instance of an FMU's library on any platform and prints its outputs to the last bit.
 
-     host LIBRARY GUID < calls
+     host LIBRARY GUID [RESOURCES] < calls
 
    One call a line; a Real is given and printed as the 16 hexadecimal digits of its bits:
 
@@ -60,7 +60,7 @@ static void print_bits(double value) {
 }
 
 int main(int argc, char** argv) {
-  if (argc != 3) stop("arguments: LIBRARY GUID");
+  if (argc != 3 && argc != 4) stop("arguments: LIBRARY GUID [RESOURCES]");
 #define FUNCTION(name)                                                            \
   fmi2##name##TYPE* name = (fmi2##name##TYPE*)library_function(argv[1], "fmi2" #name); \
   if (!name) stop("the library cannot be loaded or lacks fmi2" #name)
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
   FUNCTION(FreeInstance);
 
   const fmi2CallbackFunctions callbacks = {write_log, calloc, free, NULL, NULL};
-  fmi2Component fmu = Instantiate("host", fmi2CoSimulation, argv[2], NULL, &callbacks, fmi2False, fmi2False);
+  fmi2Component fmu = Instantiate("host", fmi2CoSimulation, argv[2], argc > 3 ? argv[3] : NULL, &callbacks, fmi2False, fmi2False);
   if (!fmu) stop("fmi2Instantiate failed");
 
   double time = 0;

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from conftest import location
 from platform_runs import RUNS
+
+from any_line import STITCHED
 
 
 @pytest.mark.parametrize("name", RUNS)
@@ -24,3 +27,25 @@ def test_results_as_on_linux64(run, name, platform):
     expected, result = run(name, "linux64"), run(name, platform)
     different = (expected.view("u8") != result.view("u8")).any(axis=1)
     assert not different.any(), f"other bits in {different.sum()} of {len(different)} steps"
+
+
+def test_windows_finds_a_line_in_every_form_that_hosts_tell(release, host, emulated, tmp_path):
+    fmu = release["Catenary"]
+    resources = fmu.with_line(STITCHED.content, tmp_path / "Fahrleitung über 100 %").folder / "resources"
+    guid = fmu.with_line(STITCHED.content, tmp_path / "for its GUID").told
+    uri, path = location(resources, "win64"), f"Z:{resources}"
+    library = next((fmu.folder / "binaries/win64").iterdir())
+    for told in (
+        uri,
+        uri + "/",
+        uri.replace("file:///", "file:/"),
+        uri.replace("file:///", "file://"),
+        uri.replace("file:///", "file:////"),
+        uri.replace("file:///", "file://localhost/"),
+        uri.replace("file:///", "FILE:///").replace("%20", " "),
+        path,
+        path.replace("/", "\\"),
+        path.replace("/", "\\") + "\\",
+    ):
+        command = [host("win64"), library, fmu.description.guid + guid, told]
+        assert emulated("win64", command, "initialize\n") == "", told
