@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from any_line import LINES, STITCHED, UNLIKE, AnyLine, supported, table
 from catenary_line import COMPLETE, parameters_of
@@ -182,3 +183,51 @@ def test_a_dropper_on_a_stitch_wire_pulls_that_and_the_messenger(line_of):
     wires = {"contact_wire.tension": 1.0, "contact_wire.EI": 0.0, "contact_wire.mass": 0.01, "messenger.EI": 0.0}
     found = line_of(line, wires | loads({20.0: F}))["pantograph[1].uplift"]
     assert found == pytest.approx(F * (end - begin) / (4 * Ts) + F / 2 * begin / T, rel=2e-3)
+
+
+def test_a_wave_meets_a_point_mass_as_on_a_string(line_of):
+    """What comes as f(t) makes y' = 2 T / (c m) (f - y) of the mass: y goes on, y - f comes back."""
+    T, mass, m, c = 20e3, 1.35, 8.0, np.sqrt(20e3 / 1.35)
+    line = table(supported(0, 240, arm=(0, 0)), masses=[(108.0, 0, m)])
+    string = {"contact_wire.tension": T, "contact_wire.mass": mass, "contact_wire.EI": 1e-3}
+    still = {"damping.mass": 0.0, "damping.stiffness": 0.0, "gravity": 0.0, "mesh.element": 0.25}
+    at = {"travel": "Position", "pantograph[1].position": 100.0, "solver.step": 2.5e-4, "solver.alpha": 0.0}
+    p = line_of(line, string | still | at | {"point.position[1]": 104.0, "point.position[2]": 116.0})
+    step, F, duration, fine = 1e-3, 100.0, 0.1, 2000
+    found = p.run(
+        step,
+        360,
+        UPLIFTS[:2],
+        targets={"pantograph[1].force": lambda t: F * np.sin(np.pi * t / duration) ** 4 if t < duration else 0.0},
+    )
+    t = np.arange(0, 0.36, step / fine * 20)
+    force = np.where(t < duration, F * np.sin(np.pi * np.minimum(t, duration) / duration) ** 4, 0.0)
+    sent = np.cumsum(force) * (t[1] - t[0]) * c / (2 * T)
+    kappa = 2 * T / (c * m)
+    decay = np.exp(-kappa * (t[1] - t[0]))
+    followed = lfilter([1 - decay], [1, -decay], sent)
+
+    def later(wave: np.ndarray, distance: float) -> np.ndarray:
+        return np.interp(step * np.arange(1, 361) - distance / c, t, wave, left=0.0)
+
+    exact = np.column_stack([later(sent, 4.0) + later(followed - sent, 12.0), later(followed, 16.0)])
+    np.testing.assert_allclose(found, exact, atol=3e-3 * exact.max())
+    assert np.abs(exact[:, 0] - later(sent, 4.0)).max() > 0.2 * exact.max()
+
+
+def test_elasticity_over_unlike_spans_is_that_of_a_string_on_springs(line_of):
+    """A contact wire without droppers on its steady arms: the springs' forces from the string's influence function."""
+    T, L, arms = 20e3, 160.0, np.array([37.0, 62.0, 121.0])
+    stiffness = np.array([400.0, 900.0, 250.0])
+    inner = [(x, 1.3, 5e5, 0.0, k) for x, k in zip(arms, stiffness)]
+    line = table([(0.0, 1.3, 0, 0, 0), *inner, (L, 1.3, 0, 0, 0)])
+
+    def influence(x, at):
+        return np.minimum(x, at) * (L - np.maximum(x, at)) / (T * L)
+
+    string = {"contact_wire.tension": T, "contact_wire.EI": 1e-3, "mesh.element": 0.1}
+    for x in (20.0, 50.0, 62.0, 90.0, 140.0):
+        to_arms = influence(x, arms)
+        held = np.linalg.solve(np.diag(1 / stiffness) + influence(arms[:, None], arms), to_arms)
+        found = line_of(line, string | loads({x: 100.0}))["pantograph[1].uplift"] / 100
+        assert found == pytest.approx(influence(x, x) - to_arms @ held, rel=3e-3)
