@@ -212,6 +212,37 @@ def test_an_own_pantograph_is_counted_apart(quick, tmp_path):
     assert "Own pantograph: dsa-250" in page and "not for this pantograph" in page
 
 
+def test_an_own_pair_runs_as_couple_does_and_beside_the_reference(quick, tmp_path):
+    """The benchmark's line and the DSA-250 at 200 km/h, with the mean force of AC lines, 0.00097 v^2 + 70 = 108.8 N."""
+    folder, _ = quick
+    pair = "--line", "benchmark-2015", "--parameters", "dsa-250", "--speed", "200", "--mean-force", "AC"
+    out, _ = zspring(folder.parent, "en50318", "--quick", *pair, "--output", "out")
+    couple, _ = zspring(tmp_path, "couple", *pair, "--set", "static_force=120", "--output", "couple")
+    (row,) = (row for row in table(folder / "runs.csv") if row["group"] == "own pair")
+    assert row["section"] in couple and f"over {row['section']}" in couple
+    force = [float(row["contact force 1 [N]"]) for row in table(tmp_path / "couple/line.csv")]
+    own = [float(row["contact force 1 [N]"]) for row in table(folder / "dsa-250-on-benchmark-2015-200-km-h.csv")]
+    assert own == pytest.approx(force, abs=0.2)  # both find the uplift to 0.1 N
+    assert float(row["mean_force [N]"]) == pytest.approx(108.8, abs=0.1)
+    first = out.splitlines()[1 if out.startswith("going on") else 0]
+    assert first.split("  ")[0] == "own pair, dsa-250 on benchmark-2015" and "200 km/h" in first
+    assert out.count("accepted ranges") == 1 and "EN 50318:2002: all 8 figures are inside" in out
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "Own pair: dsa-250 on benchmark-2015" in page and "line: contact_wire.tension" in page
+
+
+def test_bands_above_20_hz_have_finer_elements_and_steps(tmp_path):
+    out, _ = zspring(
+        tmp_path, "en50318", "--edition", str(edition(tmp_path, 250)), "--band", "20:100", "--output", "out"
+    )
+    rows = table(tmp_path / "out/slow-and-fast-250.csv")
+    said = dict(line[2:].split(": ", 1) for line in head(tmp_path / "out/slow-and-fast-250.csv"))
+    assert float(rows[1]["time [s]"]) == 5e-4 and said["catenary mesh.element"] == "0.5 m"
+    assert (said["catenary solver.step"], said["pantograph 1 solver.step"]) == ("0.0005 s", "0.00025 s")
+    assert "for bands above 20 Hz: elements of 0.5 m, steps of 0.5 ms" in out
+    assert "warning: standard deviation, 20-100 Hz: above 20 Hz" in out
+
+
 def test_two_pantographs_have_the_mean_force_of_the_case_and_each_its_figures(tmp_path):
     """By numpy on the series: means over the span, the spacing, the wire's uplift, and a band by the filter's gain."""
     line_with(tmp_path, "long.ssv", "line.spans", "6")
@@ -227,9 +258,9 @@ def test_two_pantographs_have_the_mean_force_of_the_case_and_each_its_figures(tm
     rows = table(csv)
     column = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
     assert column["position 1 [m]"] - column["position 2 [m]"] == pytest.approx(40)
-    frequency = np.fft.rfftfreq(len(rows), 1e-3)
-    x = np.tan(np.pi * np.minimum(frequency, 499) / 1000)
-    gains = [1 / (1 + (x / np.tan(np.pi * edge / 1000)) ** 8) for edge in (20, 50)]
+    step = column["time [s]"][1]
+    x = np.tan(np.pi * step * np.minimum(np.fft.rfftfreq(len(rows), step), 0.499 / step))
+    gains = [1 / (1 + (x / np.tan(np.pi * edge * step)) ** 8) for edge in (20, 50)]
     printed = {line[:32].strip(): line[32:].split() for line in out.splitlines()}
     assert "250, leading" in out.splitlines()[0] and "250, trailing" in out.splitlines()[0]
     for i, shown in enumerate(printed["standard deviation, 20-50 Hz, N"]):
@@ -347,7 +378,19 @@ def test_the_empty_edition_is_written_once(tmp_path):
         (["--edition", "spans.toml"], "spans 2 to 4: must be in 2 .. 3"),
         (["--edition", "two.toml"], "with two pantographs 60 m apart must be in 150 .. 150 m, where both have started"),
         (["--quick", "--band", "50:20"], "'50:20': must be LOW:HIGH, frequencies in Hz from 0, as 20:50"),
-        (["--quick", "--band", "20:400"], "250 km/h: band up to 400 Hz: must be below 400 Hz at 0.001 s"),
+        (["--quick", "--band", "20:101"], "250 km/h: band up to 101 Hz: must be at most 100 Hz"),
+        (["--line", "en-50318-2002"], "--line: needs --speed"),
+        (["--line", "en-50318-2002", "--speed", "250", "--series", "long.csv"], "--line is for our runs"),
+        (
+            ["--line", "en-50318-2002", "--speed", "250", "--spans", "2", "--spans", "3"],
+            "--spans: 2 values: must be one",
+        ),
+        (["--line", "en-50318-2002", "--speed", "250", "--spans", "1:2"], "spans 1 to 2: must be in 2 .. 9"),
+        (["--line", "en-50318-2002", "--speed", "250", "--spacing", "400"], "250 km/h: no whole span between 490 m"),
+        (["--line", "none.ssv", "--speed", "250"], "none.ssv: no such file"),
+        (["--series", "long.csv", "--speed", "180,200"], "--speed: 2 values: must be one"),
+        (["--speed", "250"], "--speed is for --series, --line-test and --line"),
+        (["--spacing", "100"], "--spacing is for --line"),
         (["--quick", "--point", "600"], "250 km/h: uplift at 600 m: must be in the line of 600 m"),
         (["--quick", *(f"--point={x}" for x in range(1, 10))], "9 points with uplifts: must be at most 8"),
     ],

@@ -8,19 +8,10 @@ import numpy as np
 import pytest
 
 from zspring.couple.report import summary
+from zspring.en50318.cases import reference_runs, section_of
 from zspring.en50318.edition import packaged_edition, read_edition
 from zspring.en50318.own_pantograph import OwnPantograph
-from zspring.en50318.plan import (
-    CHOICES,
-    HEADS,
-    STARTS,
-    Run,
-    head_runs,
-    reference_runs,
-    section_of,
-    sensitivity_runs,
-    slug,
-)
+from zspring.en50318.plan import CHOICES, HEADS, STARTS, Run, head_runs, sensitivity_runs, slug
 from zspring.errors import ZSpringError
 from zspring.fmu import CATENARY, Fmu, installed_fmu
 from zspring.line.evaluated import evaluated, sections

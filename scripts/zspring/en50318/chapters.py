@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..fmu import Fmu
+from ..line.limits import of_bands
+from ..line.series import BAND
 from ..line.statistics import Statistics, statistics
 from ..page import Chapter, Picture, Table
 from . import plot, report, summary
+from .cases import FINE_ELEMENT, FINE_STEP, is_fine
 from .edition import Edition, Judgement, judge
 from .passage import Passage, passages
 from .plan import Run, slug
@@ -38,13 +41,13 @@ class Outcome:
         """By title of the passage."""
         return {each.title: each.judged for each in self.passages}
 
-    def summary_rows(self) -> list[summary.Row]:
-        """The rows of the box on top."""
+    def summary_rows(self, pantograph: str = "", line: str = "") -> list[summary.Row]:
+        """The rows of the box on top; names of pantograph and line where they are no sets."""
         return [
             summary.row(
                 f"{self.edition.name}, {each.title}",
-                Path(each.case.pantograph).stem,
-                Path(each.case.line).stem,
+                pantograph or Path(each.case.pantograph).stem,
+                line or Path(each.case.line).stem,
                 each.run.speed,
                 each.run.section,
                 each.judged,
@@ -54,8 +57,14 @@ class Outcome:
         ]
 
     def remarks(self, catenary: Fmu) -> list[str]:
-        """Lines on mean forces that were aimed at, and on what the line's model is not good for."""
-        return [f"{each.title}: {line}" for each in self.passages for line in each.remarks(catenary)]
+        """Lines on mean forces that were aimed at, and on what the model is not good for."""
+        lines = [f"{each.title}: {line}" for each in self.passages for line in each.remarks(catenary)]
+        figures = {name: None for each in self.passages for name in each.case.further}
+        if is_fine(figures):
+            lines.append(
+                f"for bands above {BAND:g} Hz: elements of {FINE_ELEMENT:g} m, steps of {1e3 * FINE_STEP:g} ms"
+            )
+        return [*lines, *of_bands(figures)]
 
 
 def outcome(edition: Edition, runs: Sequence[Run], done: Mapping[str, Finished], folder: Path) -> Outcome:

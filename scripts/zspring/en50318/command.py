@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import click
 
 from ..bench.conditions import DIRECTIONS
 from ..fmu import CATENARY, installed_fmu
+from ..line.mean_force import STANDING
 from ..options import (
     FILE,
     NOT_NEGATIVE,
@@ -25,6 +29,7 @@ from ..options import (
     output_option,
     pantograph_options,
 )
+from ..parameter_sets import LINES, chosen_set
 from ..records import claimed
 
 EDITIONS = ("en-50318-2002", "benchmark-2015")
@@ -51,13 +56,30 @@ EDITIONS = ("en-50318-2002", "benchmark-2015")
 @option("--series", kind=FILE, metavar="FILE.csv", help="Instead of our runs: a contact force to evaluate.")
 @option("--line-test", kind=FILE, metavar="FILE.csv", help="A measured contact force, to compare --series with.")
 @option("--case", "case_title", kind=str, metavar="TITLE", help="Compare --series with the ranges of this case.")
-@option("--speed", kind=POSITIVE, metavar="V", help="Of series without times or positions, in km/h.")
+@numbers("--speed", None, "Speeds in km/h: of our runs on --line; one alone of series without times or positions.")
+@option(
+    "--line",
+    "line_set",
+    kind=str,
+    metavar="NAME|FILE",
+    help="Your own line, a set or an SSV file of SSP (`zspring info --sets`): runs of the pantograph of --parameters "
+    "along it at each --speed, beside the reference cases and not judged by their ranges.",
+)
+@choice(
+    "--mean-force",
+    "supply",
+    of=STANDING,
+    help="On --line: choose the uplift of each pantograph so that its mean force over the evaluated spans is the "
+    "target for this supply and speed, to 0.1 N.  [default: static_force is the force]",
+)
+@option("--spacing", kind=POSITIVE, metavar="D", help="On --line: two pantographs, D m apart.")
 @click.option(
     "--spans",
     type=Spans(),
     multiple=True,
     metavar="FIRST:LAST",
-    help="Spans to evaluate; repeat it for each tension section.  [default: of the case, or all]",
+    help="Spans to evaluate; of series, repeat it for each tension section.  [default: of the case, or all; on --line "
+    "the middle ones, or the last two before the far end is felt]",
 )
 @click.option(
     "--band",
@@ -134,7 +156,7 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
     processors. Ctrl-C keeps all finished runs, and the same command goes on from there.
 
     With --parameters or --set: this pantograph on the lines of the reference cases and of the benchmark, counted
-    apart from the reference pantograph.
+    apart from the reference pantograph. With --line: on this line instead, beside the first reference cases.
 
     With --series, --line-test or --frf: the same report on your own data. A series is a CSV with the columns
     contact force [N], time [s] and/or position [m], and perhaps wire height [m] and support uplift at X m [mm]. Lines
@@ -149,9 +171,7 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
     own_pantograph = bool(pantograph.parameter_set or pantograph.assignments)
     if own_pantograph and own and not frf:
         raise click.UsageError("--parameters and --set are for --frf and for our runs: a series has its own pantograph")
-    for name in "case_title", "speed", "spans", "span", "first_support", "turn_force":
-        if given[name] not in (None, ()) and not (series or line_test):
-            raise click.UsageError(f"--{name.removesuffix('_title').replace('_', '-')} is for --series and --line-test")
+    _refuse_what_does_not_fit(given, bool(series or line_test), own)
     if output is None:
         output = Path("results", "-".join(["en50318", *(path.stem for path in (series, line_test, frf) if path)]))
     from ..line.quantities import band_figure, point_figure
@@ -166,16 +186,32 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
         claimed(output),
     ):
         if not own:
+            from .own_pair import OwnPair
             from .own_pantograph import OwnPantograph, name_of
             from .plan import HEAD_SPEEDS
             from .run import Plan, validate
 
             if quick:
                 editions = [editions[0].only_first()]
-            few = quick or edition_path or own_pantograph
+            few = quick or edition_path or own_pantograph or given["line_set"]
             speeds = given["head_speeds"] or (() if few else HEAD_SPEEDS)
             name = name_of(pantograph.parameter_set, pantograph.assignments)
-            plan = Plan(editions, not few, speeds, OwnPantograph(name, parameters) if own_pantograph else None)
+            plan = Plan(editions, not few, speeds)
+            if given["line_set"]:
+                pair = OwnPair(
+                    line_name=Path(given["line_set"]).stem,
+                    pantograph_name=name,
+                    line=chosen_set(given["line_set"], catenary, LINES),
+                    pantograph=parameters,
+                    speeds=given["speed"],
+                    spacing=given["spacing"],
+                    supply=given["supply"] or "",
+                    spans=next(iter(given["spans"]), None),
+                    figures=further,
+                )
+                plan = replace(plan, editions=editions[:1], pair=pair)
+            elif own_pantograph:
+                plan = replace(plan, own=OwnPantograph(name, parameters))
             validate(plan, catenary, fmu, output, jobs)
             return
         from ..bench.curves import Source
@@ -184,9 +220,47 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
         source = frf and Source(
             frf, given["frf_amplitude"], given["frf_force"], given["fixture_mass"], given["frf_data_sets"]
         )
-        speed = given["speed"] and given["speed"] / 3.6
-        names = ("spans", "span", "first_support", "pantograph", "turned")
-        place = dict(zip(names, (given[n] for n in ("spans", "span", "first_support", "number", "turn_force"))))
-        data = OwnData(series, line_test, editions[0], given["case_title"], speed, **place, further=further)
+        data = OwnData(
+            series,
+            line_test,
+            editions[0],
+            given["case_title"],
+            speed=given["speed"][0] / 3.6 if given["speed"] else None,
+            spans=given["spans"],
+            span=given["span"],
+            first_support=given["first_support"],
+            pantograph=given["number"],
+            turned=given["turn_force"],
+            further=further,
+        )
         bands, direction = given["frf_bands"], given["direction"]
         report_on(data, source, parameters, bands, direction, fmu, catenary, output, jobs)
+
+
+def _refuse_what_does_not_fit(given: Mapping[str, Any], has_series: bool, own: Any) -> None:
+    """Raises UsageError for options of runs, of series or of a line without these, or for too many of their values."""
+
+    def told(name: str) -> bool:
+        return given[name] not in (None, ())
+
+    def option_of(name: str) -> str:
+        return "--" + {"case_title": "case", "supply": "mean-force", "line_set": "line"}.get(
+            name, name.replace("_", "-")
+        )
+
+    line = told("line_set")
+    for name in "case_title", "span", "first_support", "turn_force":
+        if told(name) and not has_series:
+            raise click.UsageError(f"{option_of(name)} is for --series and --line-test")
+    for name in "speed", "spans":
+        if told(name) and not (has_series or line):
+            raise click.UsageError(f"{option_of(name)} is for --series, --line-test and --line")
+        if told(name) and len(given[name]) > 1 and (has_series, line)[name == "spans"]:
+            raise click.UsageError(f"{option_of(name)}: {len(given[name])} values: must be one")
+    for name in "spacing", "supply":
+        if told(name) and not line:
+            raise click.UsageError(f"{option_of(name)} is for --line; an edition's cases say it themselves")
+    if line and own:
+        raise click.UsageError("--line is for our runs: own data have their own line")
+    if line and not told("speed"):
+        raise click.UsageError("--line: needs --speed, in km/h")

@@ -18,9 +18,10 @@ from ..page import Cell, Chapter, Picture, Table, keep_other_reports
 from ..parameter_sets import LINES, chosen_set
 from ..variables import Value
 from . import about, line_test, plot, report, summary
+from .cases import section_of
 from .edition import Case, Edition, judge
 from .measured_frf import frf_chapter
-from .plan import section_of, slug
+from .plan import slug
 from .run import REPORT, finish
 
 SIMULATION, LINE_TEST = "Simulation", "Line test"  # titles of chapters

@@ -29,6 +29,8 @@ class OwnPantograph:
         made = []
         for run in references:
             parameters = {"static_force": run.pantograph["static_force"], **self.parameters}
+            if "solver.step" in parameters:
+                parameters["solver.step"] = min(parameters["solver.step"], run.pantograph["solver.step"])
             uplift = 0.0 if run.mean_force is None else run.mean_force - parameters["static_force"]
             series = f"own-pantograph-{run.series}"
             made.append(replace(run, group=GROUP, pantograph=parameters, uplift=uplift, series=series))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..fmu import Fmu
-from ..line.limits import near_wave_speed, of_bands, of_series
+from ..line.limits import near_wave_speed, of_series
 from ..line.quantities import Statistics
 from ..line.result import read_result
 from ..line.series import Series
@@ -61,7 +61,6 @@ class Passage:
                 f"static force of {run.pantograph['static_force']:.1f} N and an uplift of {self.uplift:.1f} N on the "
                 "upper frame"
             )
-        lines += of_bands(self.case.further)
         return [*lines, *near_wave_speed(catenary, run.line, run.speed / 3.6), *of_series(self.series, run.section)]
 
 

@@ -11,15 +11,12 @@ from typing import Any
 from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..line.evaluated import stop_behind
-from ..line.journey import FittedJourney, Journey, LineExtent
+from ..line.journey import FittedJourney, LineExtent
 from ..line.mean_force import mean_force
-from ..line.quantities import band_of
-from ..line.statistics import Section, highest_band
-from ..line.system import most_points
+from ..line.statistics import Section
 from ..line.waves import fastest, undisturbed_until
 from ..parameter_sets import ACCURATE_STEP, LINES, chosen_set
 from ..variables import Value, parse
-from .edition import Case, Edition
 
 HEAD_SPEEDS = (200.0, 225.0, 250.0, 275.0, 300.0, 325.0, 350.0)  # km/h
 SHOWN_HEADS = 300.0  # km/h at which the forces of the heads are drawn, if it is one of the speeds
@@ -35,7 +32,7 @@ Parameters = Mapping[str, Value]
 class Run:
     """One pantograph along one line."""
 
-    group: str  # "reference", "sensitivity" or "heads"
+    group: str  # "reference", "sensitivity", "heads", or of one's own
     label: str  # title of the case, the choice, or the head
     of: str  # name of the edition or of the line; with the title of the case where the label is a choice
     speed: float  # km/h
@@ -119,11 +116,6 @@ HEADS = (
 )
 
 
-def reference_runs(edition: Edition, catenary: Fmu, pantograph: Fmu) -> list[Run]:
-    """A run for each case of an edition. Raises ZSpringError where a set or the spans do not fit."""
-    return [_run_of(edition, case, catenary, pantograph) for case in edition.cases]
-
-
 def sensitivity_runs(references: Sequence[Run], catenary: Fmu) -> list[Run]:
     """Each reference run with each other choice, no further than what is evaluated."""
     runs = []
@@ -153,7 +145,7 @@ def head_runs(catenary: Fmu, pantograph: Fmu, speeds: Sequence[float] = HEAD_SPE
         section = _head_section(speed, extent, fastest(catenary, line))
         stop = stop_behind(section, extent, speed / 3.6)
         for head in HEADS:
-            parameters = _pantograph(head.pantograph, pantograph)
+            parameters = pantograph_of(head.pantograph, pantograph)
             parameters |= {key: parse(pantograph.variables[key], text) for key, text in head.given.items()}
             parameters["static_force"] = standing
             run = Run(
@@ -178,69 +170,9 @@ def _head_section(speed: float, extent: LineExtent, wave: float) -> Section:
     return extent.section(max(FIRST_HEAD_SPAN, last - HEAD_SPANS + 1), last)
 
 
-def _run_of(edition: Edition, case: Case, catenary: Fmu, pantograph: Fmu) -> Run:
-    line = chosen_set(case.line, catenary, LINES)
-    parameters = {**_pantograph(case.pantograph, pantograph), "static_force": case.static_force}
-    section = section_of(case, catenary, line)
-    extent = LineExtent.of(catenary, line)
-    if case.spacing:
-        _require_room(case, section, extent)
-    _require_told(case, catenary, extent)
-    return Run(
-        "reference",
-        case.title,
-        edition.name,
-        case.speed,
-        section,
-        line,
-        parameters,
-        uplift=0.0 if case.target is None else case.target - case.static_force,
-        mean_force=case.target,
-        spacing=case.spacing or 0.0,
-        points=case.points,
-        series=f"{slug(f'{edition.name} {case.title}')}.csv",
-    )
-
-
-def _pantograph(name: str, pantograph: Fmu) -> dict[str, Value]:
+def pantograph_of(name: str, pantograph: Fmu) -> dict[str, Value]:
     """A set's parameters, with the commands' internal step where it has none."""
     return {"solver.step": ACCURATE_STEP, **chosen_set(name, pantograph)}
-
-
-def section_of(case: Case, catenary: Fmu, line: Parameters) -> Section:
-    """The evaluated spans of a case. Raises ZSpringError where the line has not so many."""
-    extent = LineExtent.of(catenary, line)
-    first, last = case.first_span, case.last_span
-    if not 2 <= first <= last <= extent.spans - 1:
-        raise ZSpringError(
-            f"{case.title}: spans {first} to {last}: must be in 2 .. {extent.spans - 1}, between the first and "
-            f"the last span of the line"
-        )
-    return extent.section(first, last)
-
-
-def _require_room(case: Case, section: Section, extent: LineExtent) -> None:
-    """Raises ZSpringError where not both pantographs have started up before the section, or one has not left it."""
-    journey = extent.complete(Journey(case.speed / 3.6, spacing=case.spacing or 0.0), 2)
-    low, high = journey.start + extent.run_up(journey.start), journey.stop - journey.spacing
-    begin, end = section.bounds
-    if begin < low or end > high:
-        raise ZSpringError(
-            f"{case.title}: {section}: with two pantographs {journey.spacing:g} m apart must be in {low:g} .. {high:g} "
-            "m, where both have started up and before the first one leaves the line: take a longer line, or other spans"
-        )
-
-
-def _require_told(case: Case, catenary: Fmu, extent: LineExtent) -> None:
-    """Raises ZSpringError for a point or a band of the case that a run does not tell."""
-    if len(case.points) > (most := most_points(catenary)):
-        raise ZSpringError(f"{case.title}: {len(case.points)} points with uplifts: must be at most {most}")
-    for point in case.points:
-        if not 0 < point < extent.length:
-            raise ZSpringError(f"{case.title}: uplift at {point:g} m: must be in the line of {extent.length:g} m")
-    for _, high in filter(None, map(band_of, case.further)):
-        if not high < (highest := highest_band(Run.step)):
-            raise ZSpringError(f"{case.title}: band up to {high:g} Hz: must be below {highest:g} Hz at {Run.step:g} s")
 
 
 def slug(text: str) -> str:

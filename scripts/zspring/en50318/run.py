@@ -13,11 +13,13 @@ from ..line.statistics import BAND, ORDER
 from ..page import Chapter, keep_other_reports, write_report
 from ..records import Record, fill
 from . import about, chapters, comparison, report, summary
+from .cases import reference_runs
 from .edition import Edition
 from .files import missing, put_in_order, run_record
+from .own_pair import OwnPair
 from .own_pantograph import OwnPantograph
 from .own_pantograph import lines as printed
-from .plan import Run, head_runs, reference_runs, sensitivity_runs
+from .plan import Run, head_runs, sensitivity_runs
 from .workers import Finished, run_all
 
 OUR_RUNS = {"report": "on our runs"}  # of whatever plan: runs.csv has them all
@@ -33,6 +35,7 @@ class Plan:
     with_sensitivity: bool
     head_speeds: Sequence[float]
     own: OwnPantograph | None = None  # on the lines of all cases
+    pair: OwnPair | None = None
 
 
 def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int) -> None:
@@ -52,9 +55,11 @@ def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int
 def _validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int, record: Record[Finished]) -> None:
     references = [reference_runs(edition, catenary, pantograph) for edition in plan.editions]
     own = [plan.own.runs(each) for each in references] if plan.own else []
+    pair = plan.pair.edition(catenary, pantograph) if plan.pair else None
+    of_pair = plan.pair.runs(pair, catenary) if plan.pair and pair else []
     sensitivity = sensitivity_runs(references[0], catenary) if plan.with_sensitivity else []
     heads = head_runs(catenary, pantograph, plan.head_speeds) if plan.head_speeds else []
-    runs = [*(run for each in (*references, *own) for run in each), *sensitivity, *heads]
+    runs = [*(run for each in (*references, *own, of_pair) for run in each), *sensitivity, *heads]
     speed = _run_missing(record, runs, catenary, pantograph, folder, jobs)
     done = {finished.key: finished for finished in record.results}
     found = {key: finished.statistics for key, finished in done.items()}
@@ -72,6 +77,11 @@ def _validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: in
         made.insert(0, plan.own.chapter(pairs, pantograph, catenary))
         box = [row for _, mine in pairs for row in plan.own.summary_rows(mine)] + box
         lines = [line for each, mine in pairs for line in printed(plan.own.name, mine, each, catenary)] + lines
+    if plan.pair and pair:
+        ours = chapters.outcome(pair, of_pair, done, folder)
+        made.insert(0, plan.pair.chapter(ours, pantograph, catenary))
+        box = [*ours.summary_rows(plan.pair.pantograph_name, plan.pair.line_name), *box]
+        lines = [*_summary(ours, catenary), *lines]
     if heads:
         compared = comparison.by_head(heads, done)
         made.append(comparison.chapter(heads, compared, catenary, folder))

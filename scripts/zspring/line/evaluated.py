@@ -15,7 +15,11 @@ def evaluated(result: LineResult, i: int, line: LineExtent) -> Section | None:
 
     None where pantograph i runs through no whole span there. What the start-up takes does not count.
     """
-    begin, end = _started(result, i, line), min(result.position[-1, i], result.undisturbed_until[i])
+    return middle_or_last(line, _started(result, i, line), min(result.position[-1, i], result.undisturbed_until[i]))
+
+
+def middle_or_last(line: LineExtent, begin: float, end: float) -> Section | None:
+    """The middle spans of the line, or else the last two whole ones, between two positions in m; None if none is."""
     middle = line.section((line.spans + 1) // 2, line.spans // 2 + 1)
     low, high = middle.bounds
     if begin <= low and high <= end:
