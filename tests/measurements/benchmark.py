@@ -23,6 +23,7 @@ import click
 import numpy as np
 from tqdm import tqdm
 
+from contact_bands import contact_bands
 from identification import identification
 from probe import probe_folder
 from zspring.bench.fixed_work import PERIODS, Work, figure_points, run_points
@@ -184,6 +185,8 @@ def main(reference_step: float, older: Path | None) -> None:
         newton(instance)
         accuracy(instance, reference_step)
         line(fmu)
+        with Fmu(installed_fmu(CATENARY)) as catenary:
+            contact_bands(catenary, fmu)
         identification(fmu)
 
 
