@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -231,6 +232,53 @@ def test_an_own_pair_runs_as_couple_does_and_beside_the_reference(quick, tmp_pat
     assert "Own pair: dsa-250 on benchmark-2015" in page and "line: contact_wire.tension" in page
 
 
+def test_a_line_by_file_is_that_of_its_set_in_editions_and_of_a_pair(quick, tmp_path):
+    """The line of 2002 as a set and as a file, in a case and as one's own line, with the case's own pantograph."""
+    folder, _ = quick
+    (row,) = (row for row in table(folder / "runs.csv") if row["group"] == "reference")
+    line = packaged_edition("x").parents[1] / "lines/en-50318-2002.toml"
+    shutil.copy(line, tmp_path / "mine.toml")
+    text = (
+        packaged_edition("en-50318-2002")
+        .read_text(encoding="utf-8")
+        .replace('line = "en-50318-2002"', 'line = "mine.toml"')
+    )
+    (tmp_path / "edition.toml").write_text(text, encoding="utf-8")
+    pair = "--line", "mine.toml", "--parameters", "en-50318-2002", "--speed", "250"
+    zspring(tmp_path, "en50318", "--quick", "--edition", "edition.toml", *pair, "--output", "out")
+    found = table(tmp_path / "out/runs.csv")
+    assert [each["group"] for each in found] == ["reference", "own pair"]
+    for name in ("mean_force [N]", "standard_deviation [N]", "midspan_uplift [mm]", "actual_minimum [N]"):
+        assert [float(each[name]) for each in found] == pytest.approx([float(row[name])] * 2, abs=1e-6), name
+    page = (tmp_path / "out/report.html").read_text(encoding="utf-8")
+    assert page.count("10 spans, 90 droppers, 0 stitch wires, 0 point masses, 600 m, FNV-1a") == 2
+
+
+def test_spans_of_series_are_those_of_their_line_which_need_not_be_alike(tmp_path):
+    """Spans of 40, 50, 60, 50 and 40 m, in the head of our own file, and by --line for one that has no head."""
+    spans = "".join(f"[[span_exception]]\nspans = {n}\nlength = {60 - 10 * abs(n - 3)}\n" for n in range(1, 6))
+    (tmp_path / "mine.toml").write_text(
+        'name = "mine"\nparameters = "en-50318-2002"\nspans = 5\n'
+        f"[span]\ndroppers = [5, 15, 25, 35]\nsag = [0, 0, 0, 0]\n{spans}",
+        encoding="utf-8",
+    )
+    zspring(tmp_path, "couple", "--line", "mine.toml", "--output", "run")
+    rows = table(tmp_path / "run/line.csv")
+    columns = ["time [s]", "position 1 [m]", "contact force 1 [N]"]
+    data = np.array([[float(row[name]) for name in columns] for row in rows])
+    np.savetxt(tmp_path / "bare.csv", data, delimiter=",", header=",".join(columns), comments="")
+    inside = (data[:, 1] >= 90) & (data[:, 1] < 200)
+    for of in ["--series", "run/line.csv"], ["--series", "bare.csv", "--line", "mine.toml"]:
+        out, _ = zspring(tmp_path, "en50318", *of, "--spans", "3:4", "--output", Path(of[1]).stem)
+        assert "spans 3 to 4, 90 to 200 m" in out
+        assert float(figures(out)["mean force, N"]) == pytest.approx(data[inside, 2].mean(), abs=0.5)
+    _, err = zspring(tmp_path, "en50318", "--series", "bare.csv", "--spans", "3", "--output", "x", status=1)
+    assert "--spans: needs the length of a span, --span L, or --line" in err
+    with_other = ["--series", "run/line.csv", "--line", "en-50318-2002", "--spans", "3:4"]
+    _, err = zspring(tmp_path, "en50318", *with_other, "--output", "x", status=1)
+    assert "spans 3 to 4: begin or end at 90 m by run/line.csv, but 120 m by --line" in err
+
+
 def test_bands_above_20_hz_have_finer_elements_and_steps(tmp_path):
     out, _ = zspring(
         tmp_path, "en50318", "--edition", str(edition(tmp_path, 250)), "--band", "20:100", "--output", "out"
@@ -380,7 +428,7 @@ def test_the_empty_edition_is_written_once(tmp_path):
         (["--quick", "--band", "50:20"], "'50:20': must be LOW:HIGH, frequencies in Hz from 0, as 20:50"),
         (["--quick", "--band", "20:101"], "250 km/h: band up to 101 Hz: must be at most 100 Hz"),
         (["--line", "en-50318-2002"], "--line: needs --speed"),
-        (["--line", "en-50318-2002", "--speed", "250", "--series", "long.csv"], "--line is for our runs"),
+        (["--line", "en-50318-2002", "--frf", "long.csv"], "--line is for our runs, --series and --line-test"),
         (
             ["--line", "en-50318-2002", "--speed", "250", "--spans", "2", "--spans", "3"],
             "--spans: 2 values: must be one",
@@ -390,7 +438,7 @@ def test_the_empty_edition_is_written_once(tmp_path):
         (["--line", "none.ssv", "--speed", "250"], "none.ssv: no such file"),
         (["--series", "long.csv", "--speed", "180,200"], "--speed: 2 values: must be one"),
         (["--speed", "250"], "--speed is for --series, --line-test and --line"),
-        (["--spacing", "100"], "--spacing is for --line"),
+        (["--spacing", "100"], "--spacing is for our runs on --line"),
         (["--quick", "--point", "600"], "250 km/h: uplift at 600 m: must be in the line of 600 m"),
         (["--quick", *(f"--point={x}" for x in range(1, 10))], "9 points with uplifts: must be at most 8"),
     ],

@@ -128,14 +128,14 @@ def test_an_own_pantograph_runs_as_the_reference_does_but_for_itself(references)
 
 
 @pytest.mark.parametrize("spans, fits", [((2, 9), True), ((2, 2), True), ((1, 2), False), ((8, 10), False)])
-def test_the_first_and_the_last_span_of_a_line_are_not_evaluated(fmus, spans, fits):
+def test_the_first_and_the_last_span_of_a_line_are_not_evaluated(spans, fits):
     case = read_edition(packaged_edition("en-50318-2002")).cases[0]
     case = case.model_copy(update={"first_span": spans[0], "last_span": spans[1]})
     if fits:
-        assert section_of(case, fmus[0], {"line.spans": 10}) == Section.alike(*spans, 60.0)
+        assert section_of(case, LineExtent.alike(10, 60.0)) == Section.alike(*spans, 60.0)
     else:
         with pytest.raises(ZSpringError, match=rf"spans {spans[0]} to {spans[1]}: must be in 2 \.\. 9"):
-            section_of(case, fmus[0], {"line.spans": 10})
+            section_of(case, LineExtent.alike(10, 60.0))
 
 
 def test_names_of_files_are_plain():

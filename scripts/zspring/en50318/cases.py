@@ -12,7 +12,7 @@ from ..line.quantities import band_of
 from ..line.series import BAND
 from ..line.statistics import Section
 from ..line.system import most_points
-from ..parameter_sets import LINES, chosen_set
+from ..line_file.chosen import ChosenLine, line_of
 from .edition import Case, Edition
 from .plan import Parameters, Run, pantograph_of, slug
 
@@ -26,15 +26,15 @@ def reference_runs(edition: Edition, catenary: Fmu, pantograph: Fmu) -> list[Run
     """A run for each case of an edition. Raises ZSpringError where a set or the spans do not fit."""
     runs = []
     for case in edition.cases:
-        line = chosen_set(case.line, catenary, LINES)
         parameters = {**pantograph_of(case.pantograph, pantograph), "static_force": case.static_force}
-        runs.append(case_run("reference", edition.name, case, catenary, line, parameters))
+        runs.append(case_run("reference", edition.name, case, line_of(case.line, catenary), parameters))
     return runs
 
 
-def case_run(group: str, of: str, case: Case, catenary: Fmu, line: Parameters, pantograph: Parameters) -> Run:
+def case_run(group: str, of: str, case: Case, line: ChosenLine, pantograph: Parameters) -> Run:
     """The run of a case, whose series is kept. Raises ZSpringError where spans, points or bands do not fit."""
-    section, extent = section_of(case, catenary, line), LineExtent.of(catenary, line)
+    catenary, extent = line.catenary, LineExtent.of(line.catenary, line.parameters)
+    section = section_of(case, extent)
     if case.spacing:
         _require_room(case, section, extent)
     _require_told(case, catenary, extent)
@@ -45,11 +45,12 @@ def case_run(group: str, of: str, case: Case, catenary: Fmu, line: Parameters, p
         of,
         case.speed,
         section,
-        line,
+        line.parameters,
         pantograph,
         uplift=0.0 if target is None else target - case.static_force,
         mean_force=target,
         spacing=case.spacing or 0.0,
+        table=catenary.line,
         points=case.points,
         series=f"{slug(f'{of} {case.title}')}.csv",
     )
@@ -61,9 +62,8 @@ def is_fine(figures: Iterable[str]) -> bool:
     return any(high > BAND for _, high in filter(None, map(band_of, figures)))
 
 
-def section_of(case: Case, catenary: Fmu, line: Parameters) -> Section:
+def section_of(case: Case, extent: LineExtent) -> Section:
     """The evaluated spans of a case. Raises ZSpringError where the line has not so many."""
-    extent = LineExtent.of(catenary, line)
     first, last = case.first_span, case.last_span
     if not 2 <= first <= last <= extent.spans - 1:
         raise ZSpringError(

@@ -12,6 +12,7 @@ import click
 from ..bench.conditions import DIRECTIONS
 from ..fmu import CATENARY, installed_fmu
 from ..line.mean_force import STANDING
+from ..line_file.chosen import line_of
 from ..options import (
     FILE,
     NOT_NEGATIVE,
@@ -29,7 +30,6 @@ from ..options import (
     output_option,
     pantograph_options,
 )
-from ..parameter_sets import LINES, chosen_set
 from ..records import claimed
 
 EDITIONS = ("en-50318-2002", "benchmark-2015")
@@ -62,8 +62,9 @@ EDITIONS = ("en-50318-2002", "benchmark-2015")
     "line_set",
     kind=str,
     metavar="NAME|FILE",
-    help="Your own line, a set or an SSV file of SSP (`zspring info --sets`): runs of the pantograph of --parameters "
-    "along it at each --speed, beside the reference cases and not judged by their ranges.",
+    help="Your own line, a set (`zspring info --sets`), an SSV file of SSP, or a line file of `zspring line`: runs of "
+    "the pantograph of --parameters along it at each --speed, beside the reference cases and not judged by their "
+    "ranges. With --series or --line-test: the line whose spans are meant.",
 )
 @choice(
     "--mean-force",
@@ -199,9 +200,8 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
             plan = Plan(editions, not few, speeds)
             if given["line_set"]:
                 pair = OwnPair(
-                    line_name=Path(given["line_set"]).stem,
+                    line=line_of(given["line_set"], catenary),
                     pantograph_name=name,
-                    line=chosen_set(given["line_set"], catenary, LINES),
                     pantograph=parameters,
                     speeds=given["speed"],
                     spacing=given["spacing"],
@@ -229,6 +229,7 @@ def en50318(pantograph, edition_path, quick, series, line_test, frf, jobs, outpu
             spans=given["spans"],
             span=given["span"],
             first_support=given["first_support"],
+            line=line_of(given["line_set"], catenary) if given["line_set"] else None,
             pantograph=given["number"],
             turned=given["turn_force"],
             further=further,
@@ -255,12 +256,12 @@ def _refuse_what_does_not_fit(given: Mapping[str, Any], has_series: bool, own: A
     for name in "speed", "spans":
         if told(name) and not (has_series or line):
             raise click.UsageError(f"{option_of(name)} is for --series, --line-test and --line")
-        if told(name) and len(given[name]) > 1 and (has_series, line)[name == "spans"]:
+        if told(name) and len(given[name]) > 1 and (has_series if name == "speed" else not has_series):
             raise click.UsageError(f"{option_of(name)}: {len(given[name])} values: must be one")
     for name in "spacing", "supply":
-        if told(name) and not line:
-            raise click.UsageError(f"{option_of(name)} is for --line; an edition's cases say it themselves")
-    if line and own:
-        raise click.UsageError("--line is for our runs: own data have their own line")
-    if line and not told("speed"):
+        if told(name) and (not line or own):
+            raise click.UsageError(f"{option_of(name)} is for our runs on --line; an edition's cases say it themselves")
+    if line and own and not has_series:
+        raise click.UsageError("--line is for our runs, --series and --line-test")
+    if line and not own and not told("speed"):
         raise click.UsageError("--line: needs --speed, in km/h")

@@ -17,7 +17,8 @@ from pydantic import BeforeValidator, Field, model_validator
 from ..errors import ZSpringError, did_you_mean
 from ..line.mean_force import STANDING, mean_force
 from ..line.quantities import FIGURES, FREE, Statistics, is_figure, points_of
-from ..parameter_sets import LINES, PANTOGRAPHS, find_set
+from ..line_file.schema import LineFile
+from ..parameter_sets import LINES, PANTOGRAPHS, describe_set, find_set
 from ..settings import Pair, Positive, Table, fitting, set_name, settings_of
 
 DEVIATION_SHARE = 0.3  # of the mean force: largest standard deviation, as papers quote it
@@ -160,9 +161,17 @@ def packaged_edition(name: str) -> Path:
     return Path(str(importlib.resources.files("zspring") / "resources" / "en50318" / f"{name}.toml"))
 
 
-def sets_of(case: Case) -> list[Path]:
-    """Files of the case's line and pantograph. Raises ZSpringError where one is not there."""
-    return [find_set(case.line, LINES), find_set(case.pantograph)]
+def sources_of(case: Case) -> list[tuple[str, str, dict[str, list[str]]]]:
+    """Name, description and remarks by text, of line and pantograph. Raises ZSpringError where a file is not there."""
+    files = [find_set(case.line, LINES), find_set(case.pantograph)]
+    found = []
+    for path in files:
+        if path.suffix == ".toml":
+            with settings_of(path, LineFile, brackets=True) as file:
+                found.append((file.name, file.description, dict[str, list[str]]()))
+        else:
+            found.append((path.stem, *describe_set(path)))
+    return found
 
 
 def judge(found: Statistics, ranges: Mapping[str, Range]) -> list[Judgement]:

@@ -6,16 +6,19 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from ..bench.curves import Source
 from ..errors import ZSpringError, tell
 from ..fmu import Fmu
+from ..line.journey import LineExtent
 from ..line.limits import of_bands, of_series
 from ..line.quantities import FIGURES
 from ..line.series import Series, read_series, require_pressing
 from ..line.stated import SAME_SPEED, agreed
 from ..line.statistics import Section, Statistics, statistics
+from ..line_file.chosen import ChosenLine, line_of
 from ..page import Cell, Chapter, Picture, Table, keep_other_reports
-from ..parameter_sets import LINES, chosen_set
 from ..variables import Value
 from . import about, line_test, plot, report, summary
 from .cases import section_of
@@ -24,6 +27,7 @@ from .measured_frf import frf_chapter
 from .plan import slug
 from .run import REPORT, finish
 
+SAME_SPANS = 1e-3  # m
 SIMULATION, LINE_TEST = "Simulation", "Line test"  # titles of chapters
 
 
@@ -40,14 +44,14 @@ class OwnData:
     span: float | None  # m
     first_support: float | None  # m, where span 1 begins
     pantograph: int
+    line: ChosenLine | None = None  # whose spans are meant
     turned: Sequence[str] = ()  # of "series" and "line-test", those whose forces have the other sign
     further: Sequence[str] = ()  # figures to tell besides those of every evaluation and of the case
 
     def told(self) -> dict[str, str]:
         """What was chosen, in words."""
-        return {name: str(value) for name, value in vars(self).items() if name != "edition"} | {
-            "edition": self.edition.name
-        }
+        named = {"edition": self.edition.name, "line": self.line.name if self.line else None}
+        return {name: str(value) for name, value in {**vars(self), **named}.items()}
 
     @property
     def case(self) -> Case | None:
@@ -93,23 +97,44 @@ class OwnData:
         case, heads = self.case, {one.name: one.stated for one in series}
         speeds = {one.name: one.speed for one in series}
         lengths = {"--span": self.span, **{name: head.span for name, head in heads.items()}}
+        lines = {name: LineExtent(np.array(head.boundaries)) for name, head in heads.items() if head.boundaries}
+        if self.line:
+            lines["--line"] = LineExtent.of(self.line.catenary, self.line.parameters)
         of_case = None
         if case:
-            of_case = section_of(case, catenary, chosen_set(case.line, catenary, LINES))
+            line = line_of(case.line, catenary)
+            lines[f"the case {case.title}"] = extent = LineExtent.of(line.catenary, line.parameters)
+            of_case = section_of(case, extent)
             speeds[f"the case {case.title}"] = case.speed
-            lengths[f"the case {case.title}"] = of_case.span
         agreed("speed", "km/h", speeds, SAME_SPEED)
-        span = agreed("span", "m", lengths)
         begin = next(iter(self._begins(series)), self.first_support or 0.0)
-        if not self.spans:
-            return [of_case.moved(begin)] if of_case else []
-        if span is None:
-            raise ZSpringError("--spans: needs the length of a span, --span L; no file says it in its head")
-        for first, last in self.spans:
+        chosen = self.spans or ([(of_case.first, of_case.last)] if of_case else [])
+        lengths |= {name: extent.section(1, extent.spans).span for name, extent in lines.items()}
+        span = agreed("span", "m", lengths)
+        for first, last in chosen:
             for name, head in heads.items():
                 if head.spans and last > head.spans:
                     raise ZSpringError(f"spans {first} to {last}: {name} says that there are {head.spans}")
-        return [Section.alike(*each, span, begin) for each in self.spans]
+        if lines:
+            return [_same_section(lines, span, *each).moved(begin) for each in chosen]
+        if chosen and span is None:
+            raise ZSpringError("--spans: needs the length of a span, --span L, or --line; no file says it in its head")
+        return [Section.alike(*each, span or 0.0, begin) for each in chosen]
+
+
+def _same_section(lines: Mapping[str, LineExtent], span: float | None, first: int, last: int) -> Section:
+    """These spans of all lines. Raises ZSpringError where a line has them elsewhere, or all spans alike, m."""
+    sections = {name: extent.section(first, last) for name, extent in lines.items()}
+    (name, section), *others = sections.items()
+    if span is not None:
+        others += [(f"a span of {span:g} m", Section.alike(first, last, span))]
+    for other, found in others:
+        for a, b in zip(section.edges, found.edges):
+            if abs(a - b) > SAME_SPANS:
+                raise ZSpringError(
+                    f"spans {first} to {last}: begin or end at {a:g} m by {name}, but {b:g} m by {other}"
+                )
+    return section
 
 
 def report_on(

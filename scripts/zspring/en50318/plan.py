@@ -15,6 +15,7 @@ from ..line.journey import FittedJourney, LineExtent
 from ..line.mean_force import mean_force
 from ..line.statistics import Section
 from ..line.waves import fastest, undisturbed_until
+from ..line_table import LineTable
 from ..parameter_sets import ACCURATE_STEP, LINES, chosen_set
 from ..variables import Value, parse
 
@@ -47,13 +48,20 @@ class Run:
     start: float | None = None  # m along the line; None: half a span
     stop: float | None = None  # m; None: half a span before the end
     spacing: float = 0.0  # m, back to a trailing pantograph of the same parameters; 0: there is none
+    table: LineTable | None = None  # of a line by file
     points: tuple[float, ...] = ()  # m, whose uplift is kept, before that at the middles of the section's spans
     series: str = ""  # name of the file that its series is written to; none: not kept
 
     @property
     def key(self) -> str:
         """Tells runs apart, by everything that changes their numbers."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()[:12]
+        all_else = asdict(replace(self, table=None))
+        told = {**all_else, "table": self.table.digest if self.table else None}
+        return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:12]
+
+    def on(self, catenary: Fmu) -> Fmu:
+        """The catenary with the run's line."""
+        return catenary.with_line(self.table) if self.table else catenary
 
 
 @dataclass(frozen=True)
@@ -123,7 +131,7 @@ def sensitivity_runs(references: Sequence[Run], catenary: Fmu) -> list[Run]:
         for choice in CHOICES:
             changed = replace(run, line={**run.line, **choice.line}, **choice.run)
             changed = replace(changed, group="sensitivity", label=choice.label, of=f"{run.of}, {run.label}", series="")
-            extent = LineExtent.of(catenary, changed.line)
+            extent = LineExtent.of(changed.on(catenary), changed.line)
             if choice.spans:
                 first, last = choice.spans
                 changed = replace(changed, section=extent.section(first, last))

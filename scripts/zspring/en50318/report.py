@@ -10,11 +10,11 @@ from ..bench.compare import LevelComparison
 from ..fmu import Fmu
 from ..line.mean_force import mean_force
 from ..line.quantities import Statistics, described
+from ..line_table import LineTable
 from ..page import BAD, GOOD, WORDS, Cell, Table
-from ..parameter_sets import describe_set
 from ..text_tables import aligned
 from ..variables import text
-from .edition import Case, Judgement, sets_of
+from .edition import Case, Judgement, sources_of
 from .plan import Run
 from .summary import share
 
@@ -150,8 +150,7 @@ def parameter_table(case: Case, run: Run, catenary: Fmu, pantograph: Fmu) -> Tab
     """Every parameter that the sets of a case give, with its source; arrays in one row."""
     rows: list[list[str | Cell]] = []
     parts = ("line", catenary, run.line), ("pantograph", pantograph, run.pantograph)
-    for path, (part, fmu, values) in zip(sets_of(case), parts):
-        description, remarks = describe_set(path)
+    for (title, description, remarks), (part, fmu, values) in zip(sources_of(case), parts):
         own = {name: remark for remark, names in remarks.items() for name in names}
         own.setdefault("static_force", f"of the case {case.title}")
         arrays: dict[tuple[str, str, str], list[str]] = {}
@@ -159,12 +158,21 @@ def parameter_table(case: Case, run: Run, catenary: Fmu, pantograph: Fmu) -> Tab
             variable = fmu.variables[name]
             key = re.sub(r"\[\d+\]", "[]", name), variable.unit or "", own.get(name, "as its set says, above")
             arrays.setdefault(key, []).append(text(variable, value))
-        rows.append([f"{part}: {path.stem}", "", Cell(description, WORDS)])
+        rows.append([f"{part}: {title}", "", Cell(description, WORDS)])
+        if part == "line" and run.table:
+            rows.append(["resources/line.table", table_told(run.table), Cell("of the line file", WORDS)])
         rows += [
             [name, f"{', '.join(each)} {unit}".strip(), Cell(source, WORDS)]
             for (name, unit, source), each in arrays.items()
         ]
     return Table(f"Parameters of {case.title}", ["parameter", "value", "source"], rows)
+
+
+def table_told(table: LineTable) -> str:
+    """What a line's table holds, and by what it is known."""
+    parts = {"spans": table.supports[1:], "droppers": table.droppers, "stitch wires": table.stitches}
+    counted = [f"{len(each)} {name}" for name, each in {**parts, "point masses": table.masses}.items()]
+    return f"{', '.join(counted)}, {table.boundaries[-1]:g} m, FNV-1a {table.digest}"
 
 
 def departures(judged: Mapping[str, Mapping[str, Sequence[Judgement]]]) -> str:

@@ -55,8 +55,8 @@ def validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int
 def _validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: int, record: Record[Finished]) -> None:
     references = [reference_runs(edition, catenary, pantograph) for edition in plan.editions]
     own = [plan.own.runs(each) for each in references] if plan.own else []
-    pair = plan.pair.edition(catenary, pantograph) if plan.pair else None
-    of_pair = plan.pair.runs(pair, catenary) if plan.pair and pair else []
+    pair = plan.pair.edition(pantograph) if plan.pair else None
+    of_pair = plan.pair.runs(pair) if plan.pair and pair else []
     sensitivity = sensitivity_runs(references[0], catenary) if plan.with_sensitivity else []
     heads = head_runs(catenary, pantograph, plan.head_speeds) if plan.head_speeds else []
     runs = [*(run for each in (*references, *own, of_pair) for run in each), *sensitivity, *heads]
@@ -79,8 +79,8 @@ def _validate(plan: Plan, catenary: Fmu, pantograph: Fmu, folder: Path, jobs: in
         lines = [line for each, mine in pairs for line in printed(plan.own.name, mine, each, catenary)] + lines
     if plan.pair and pair:
         ours = chapters.outcome(pair, of_pair, done, folder)
-        made.insert(0, plan.pair.chapter(ours, pantograph, catenary))
-        box = [*ours.summary_rows(plan.pair.pantograph_name, plan.pair.line_name), *box]
+        made.insert(0, plan.pair.chapter(ours, pantograph))
+        box = [*ours.summary_rows(plan.pair.pantograph_name, plan.pair.line.name), *box]
         lines = [*_summary(ours, catenary), *lines]
     if heads:
         compared = comparison.by_head(heads, done)

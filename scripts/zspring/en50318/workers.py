@@ -78,7 +78,7 @@ def _open(catenary: Path, pantograph: Path) -> None:
 
 def _execute(run: Run, folder: Path) -> Finished:
     """One run; its series goes to a file that is whole or not there. Raises ZSpringError naming the run."""
-    catenary, pantograph = _fmus
+    catenary, pantograph = run.on(_fmus[0]), _fmus[1]
     count = 2 if run.spacing else 1
     line = {**run.line, **watching(catenary, (*run.points, *run.section.middles))}
     journey = Journey(run.speed / 3.6, run.start, run.stop, run.step, run.spacing, run.start_up)
