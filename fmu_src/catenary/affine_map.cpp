@@ -24,8 +24,7 @@ Held going_on(const LineState& s, double length) {
 }  // namespace
 
 double height_under(const Line& line, const LineState& s, int i) {
-  const Place place = line.mesh.at(s.passage[i].position);
-  return place.value.dot(line.heights(s.u, place));
+  return line.course(s.u, line.at(s.passage[i].position)).height;
 }
 
 Foresight::Foresight(const Line& line, Hht& hht)

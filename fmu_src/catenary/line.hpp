@@ -16,8 +16,19 @@ struct Line {
   // Forces of supports, steady arms and droppers that pull, times `factor`.
   void add_springs(double factor, const VectorXd& u, VectorXd& forces) const;
   SparseMatrix stiffness() const;  // K
-  // Of the contact wire at the nodes about a place, over the datum.
-  Eigen::Vector4d heights(const VectorXd& u, const Place& at) const { return at.of(u) + at.of(shape.height); }
+  // A place with the irregularity there, for the contact wire's course.
+  Place at(double position) const {
+    Place place = mesh.at(position);
+    if (mesh.contains(position)) place.irregularity = table.irregularity(position);
+    return place;
+  }
+  // The contact wire's over the datum at a place, which a pantograph meets.
+  Irregularity course(const VectorXd& u, const Place& at) const {
+    const Eigen::Vector4d nodes = at.of(u) + at.of(shape.height);
+    const Irregularity& more = at.irregularity;
+    return {at.value.dot(nodes) + more.height, at.slope.dot(nodes) + more.slope,
+            at.curvature.dot(nodes) + more.curvature};
+  }
 
   const Parameters& p;
   LineTable table;

@@ -121,16 +121,16 @@ Text LineTable::described(const Dropper& dropper) const {
   return text("span %d, dropper %d, at %.10g m", span + 1, i, dropper.x);
 }
 
-ProfilePoint LineTable::irregularity(double x) const {
-  if (profile.empty() || x < profile.front().x || x > profile.back().x) return {x, 0, 0};
+Irregularity LineTable::irregularity(double x) const {
+  if (profile.empty() || x < profile.front().x || x > profile.back().x) return {};
   const auto after = std::upper_bound(profile.begin() + 1, profile.end() - 1, x,
                                       [](double place, const ProfilePoint& point) { return place < point.x; });
   const ProfilePoint &a = after[-1], &b = after[0];
   const double l = b.x - a.x, s = (x - a.x) / l, r = 1 - s;
-  return {x,
-          r * r * (1 + 2 * s) * a.height + l * s * r * r * a.slope + s * s * (1 + 2 * r) * b.height -
+  return {r * r * (1 + 2 * s) * a.height + l * s * r * r * a.slope + s * s * (1 + 2 * r) * b.height -
               l * s * s * r * b.slope,
-          6 * s * r * (b.height - a.height) / l + r * (1 - 3 * s) * a.slope + s * (1 - 3 * r) * b.slope};
+          6 * s * r * (b.height - a.height) / l + r * (1 - 3 * s) * a.slope + s * (1 - 3 * r) * b.slope,
+          (6 * (r - s) * (b.height - a.height) / l + (6 * s - 4) * a.slope + (6 * s - 2) * b.slope) / l};
 }
 
 void LineTable::check() const {

@@ -52,6 +52,12 @@ struct ProfilePoint {
   double slope;   // 1
 };
 
+struct Irregularity {    // of the contact wire at a place
+  double height = 0;     // m
+  double slope = 0;      // 1
+  double curvature = 0;  // 1/m
+};
+
 struct LineTable {
   static constexpr char name[] = "line";  // of the file, line.table
   static constexpr char magic[] = "zspline1";
@@ -67,8 +73,7 @@ struct LineTable {
   bool of_parameters() const { return of_parameters_; }
   // "span 3, dropper 2, at 130.5 m", or the parameters that it comes from.
   Text described(const Dropper& dropper) const;
-  // m, of the contact wire's irregularity, and its slope there.
-  ProfilePoint irregularity(double x) const;
+  Irregularity irregularity(double x) const;
 
   std::vector<Support> supports;
   double contact_begin = 0, contact_end = 0;  // m, heights of the contact wire at the anchors

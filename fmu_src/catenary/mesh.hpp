@@ -27,6 +27,7 @@ struct Place {
   Eigen::Vector4d value = Eigen::Vector4d::Zero();
   Eigen::Vector4d slope = Eigen::Vector4d::Zero();      // 1/m, d value / dx
   Eigen::Vector4d curvature = Eigen::Vector4d::Zero();  // 1/m2
+  Irregularity irregularity;                            // where that counts: Line::at
 
   // The deflections and slopes of the contact wire at the element's ends, out of a vector of all.
   template <class Vector>

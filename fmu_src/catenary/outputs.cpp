@@ -19,9 +19,9 @@ int nearest_dropper(const Mesh& mesh, double place) {
 struct View {
   View(const Line& overhead, const SimulationState& state)
       : line(overhead), s(state.line), map(state.map), datum(state.datum) {
-    for (int i = 0; i < pantographs; ++i) contact[i] = line.mesh.at(s.passage[i].position);
+    for (int i = 0; i < pantographs; ++i) contact[i] = line.at(s.passage[i].position);
     for (int i = 0; i < most_points; ++i) {
-      point[i] = line.mesh.at(line.p.point.position[i]);
+      point[i] = line.at(line.p.point.position[i]);
       dropper[i] = nearest_dropper(line.mesh, line.p.point.position[i]);
     }
     double least = HUGE_VAL, most = -HUGE_VAL;
@@ -55,24 +55,22 @@ struct View {
 
 // Of the contact wire at a place that moves: its height over the line's datum, its lift from the unloaded shape,
 // the rate of its height.
-Eigen::Vector4d heights(const View& x, const Place& at) { return x.line.heights(x.s.u, at); }
-
-double height(const View& x, const Place& at) { return at.value.dot(heights(x, at)); }
+double height(const View& x, const Place& at) { return x.line.course(x.s.u, at).height; }
 double uplift(const View& x, const Place& at) { return at.value.dot(at.of(x.s.u)); }
 double velocity(const View& x, const Place& at, double speed) {
-  return at.value.dot(at.of(x.s.v)) + speed * at.slope.dot(heights(x, at));
+  return at.value.dot(at.of(x.s.v)) + speed * x.line.course(x.s.u, at).slope;
 }
 
 double height_change(const View& x, const Place& at, const LineState& d, const Passage& moved) {
-  return at.value.dot(at.of(d.u)) + moved.position * at.slope.dot(heights(x, at));
+  return at.value.dot(at.of(d.u)) + moved.position * x.line.course(x.s.u, at).slope;
 }
 double uplift_change(const View& x, const Place& at, const LineState& d, const Passage& moved) {
   return at.value.dot(at.of(d.u)) + moved.position * at.slope.dot(at.of(x.s.u));
 }
 double velocity_change(const View& x, const Place& at, double speed, const LineState& d, const Passage& moved) {
-  const Eigen::Vector4d height = heights(x, at);
+  const auto course = x.line.course(x.s.u, at);
   return at.value.dot(at.of(d.v)) + moved.position * at.slope.dot(at.of(x.s.v)) + speed * at.slope.dot(at.of(d.u)) +
-         moved.speed * at.slope.dot(height) + speed * moved.position * at.curvature.dot(height);
+         moved.speed * course.slope + speed * moved.position * course.curvature;
 }
 
 // Of the wires above a point, over the datum or, of a variation, by how much it varies.

@@ -122,12 +122,6 @@ StaticShape static_shape(const Parameters& p, const LineTable& line, const Mesh&
     settle(mesh, hold(m.wires + dropper_stiffness(mesh, shape.stiffness), anchors_and_supports), too_long, shape);
     check_lengths();
   }
-  if (!line.profile.empty())
-    for (int station = 0; station <= last; ++station) {
-      const ProfilePoint irregularity = line.irregularity(mesh.x[station]);
-      shape.height[deflection(station, Contact)] += irregularity.height;
-      shape.height[slope(station, Contact)] += irregularity.slope;
-    }
   return shape;
 }
 

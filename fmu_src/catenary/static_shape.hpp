@@ -6,7 +6,7 @@
 namespace zspring::catenary {
 
 struct StaticShape {
-  // m and 1, of all degrees of freedom over the line's datum; the contact wire's with its irregularity.
+  // m and 1, of all degrees of freedom over the line's datum, without irregularity.
   VectorXd height;
   VectorXd tension;    // N, of the droppers at mid-length; below 0 by stiffness times the gap of one that hangs loose
   VectorXd length;     // m, of the droppers, between the wires

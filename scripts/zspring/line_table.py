@@ -9,10 +9,8 @@ SI units, upward positive, places from the line's begin, in ascending order. `zs
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -110,23 +108,14 @@ class LineTable:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(self.content)
 
-    def irregularity(self, x: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Of the contact wire at places in m, m, or its slope. (n,)"""
+    def irregularity(self, x: np.ndarray) -> np.ndarray:
+        """Of the contact wire at places in m, m. (n,)"""
         if not len(self.profile):
             return np.zeros(len(x))
         from scipy.interpolate import CubicHermiteSpline  # slow to load
 
-        found = CubicHermiteSpline(*(self.profile[name] for name in PROFILE.names or ()), extrapolate=False)(
-            x, derivative
-        )
-        return np.nan_to_num(found)
-
-    def stations(self, element: float) -> np.ndarray:
-        """Ends of the contact wire's elements, at most `element` m long, m. (m,)"""
-        own = [self.boundaries, self.droppers["x"], self.stitches["begin"], self.stitches["end"], self.masses["x"]]
-        places = np.unique(np.concatenate(own))
-        parts = [np.linspace(a, b, math.ceil((b - a) / element - 1e-9) + 1) for a, b in pairwise(places)]
-        return np.unique(np.concatenate(parts))
+        points = (self.profile[name] for name in ("x", "height", "slope"))
+        return np.nan_to_num(CubicHermiteSpline(*points, extrapolate=False)(x))
 
     @property
     def boundaries(self) -> np.ndarray:

@@ -174,10 +174,13 @@ class AnyLine(Line):
         self.flexibility, self.rope, self.J = 1 / k, drop["mass"] * self.dropper_length, (low, -high)
         x = contact.x
         nodes = np.column_stack([level(x), np.full(len(x), (t.ends[1] - t.ends[0]) / self.length)])
-        if len(t.profile):
-            profile = CubicHermiteSpline(t.profile["x"], t.profile["height"], t.profile["slope"], extrapolate=False)
-            nodes += np.nan_to_num(np.column_stack([profile(x), profile(x, 1)]))
         self.shape = self.shape + nodes.ravel()[contact.free]  # but for heights of the ends themselves
+
+    def irregularity(self, x) -> np.ndarray:
+        p = self.table.profile
+        if not len(p):
+            return np.zeros(np.shape(x))
+        return np.nan_to_num(CubicHermiteSpline(p["x"], p["height"], p["slope"], extrapolate=False)(x))
 
     def _upper_points(self, masses: np.ndarray):
         rows = self.wires[1].at(masses["x"])
@@ -264,7 +267,7 @@ IRREGULAR = replace(
         line_table.DROPPER,
     ),
     profile=np.array(
-        [(x, 0.002 * np.sin(x / 3), 0.002 / 3 * np.cos(x / 3)) for x in np.arange(20, 200, 1.7)], line_table.PROFILE
+        [(x, 0.002 * np.sin(8 * x), 0.016 * np.cos(8 * x)) for x in np.arange(20, 200, 0.17)], line_table.PROFILE
     ),
 )
 LINES = {"unlike spans": UNLIKE, "stitched": STITCHED, "irregular": IRREGULAR}

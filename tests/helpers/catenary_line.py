@@ -200,6 +200,10 @@ class Line:
         # A tension pulls the contact wire up and the messenger down.
         self.J = (contact.at(drop).toarray().T, -messenger.at(drop).toarray().T)
 
+    def irregularity(self, x: float | Sequence[float] | np.ndarray) -> np.ndarray:
+        """What pantographs meet besides the wire's own shape, m."""
+        return np.zeros(np.shape(x))
+
     def static_height(self, x: float | np.ndarray) -> np.ndarray:
         """Height of the unloaded contact wire (m)."""
         return self.wires[0].at(x) @ self.shape

@@ -159,7 +159,7 @@ class Solver:
             if force is None:
                 cross = self.weight * contact.Y.T @ dense
                 own = self.weight * dense.T @ solved
-                penetration = offset(t) - N @ (u0 + line.shape)
+                penetration = offset(t) - N @ (u0 + line.shape) - line.irregularity(position(t))
                 for i, (p, body) in enumerate(zip(self.pantographs, self.masses)):
                     penetration[i] += p.F0 / p.kc + body.predict()[0]
                     own[i, i] += 1 / p.kc + self.weight * body.solve(np.eye(len(body.u)))[0, 0]
@@ -193,7 +193,7 @@ class Solver:
             np.asarray(position(t), float),
             F,
             np.array([body.u[0] for body in self.masses]),
-            N @ (contact.u + line.shape),
+            N @ (contact.u + line.shape) + line.irregularity(position(t)),
             tension,
             self.supports @ contact.u,
             self.points @ contact.u,
@@ -218,7 +218,7 @@ def line_run(
     span, so that F0 holds at the unloaded nominal height; without, F0 holds at the loaded height of the start.
     """
     u = line.equilibrium([start], [pantograph.F0])[0]
-    loaded = (line.wires[0].at(start) @ (u + line.shape))[0]
+    loaded = (line.wires[0].at(start) @ (u + line.shape))[0] + line.irregularity(start)
 
     def offset(t: float) -> float:
         done = min(1.0, speed * t / line.span) if ramp else 0.0

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..line.journey import parameter_value
 from ..line_table import replaces
 from ..options import chosen_parameters
 from ..parameter_sets import LINES, chosen_set
 from ..variables import Value
 from .design import read_line
-from .measured import not_followed
 
 SUFFIX = ".toml"
 
@@ -62,8 +59,4 @@ def chosen_line(
     given = chosen_parameters(line.catenary, None, assignments, but_not, LINES, settable)
     for name in filter(replaces, given if line.catenary.line else ()):
         raise ZSpringError(f"{name}: the line's table stands for it: change the line file")
-    parameters = {**line.parameters, **given}
-    if table := line.catenary.line:
-        for remark in not_followed(table, parameter_value(line.catenary, parameters, "mesh.element")):
-            print(remark, file=sys.stderr)
-    return ChosenLine(line.catenary, parameters, line.name)
+    return ChosenLine(line.catenary, {**line.parameters, **given}, line.name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,11 +11,9 @@ import click
 
 from ..exported_fmu import Copy
 from ..fmu import CATENARY, Fmu, installed_fmu
-from ..line.journey import parameter_value
 from ..options import FILE, POSITIVE, Spans, copy_examples, line_fmu_option, opened, option, output_option
 from ..records import claimed
 from .design import Line, read_line
-from .measured import not_followed
 from .report import summary
 from .statics import FORCE, at_rest
 
@@ -28,8 +25,6 @@ def _line(path: Path, fmu_path: Path | None) -> Iterator[tuple[Line, Fmu]]:
     """A line, and the catenary with it."""
     with opened(fmu_path or installed_fmu(CATENARY)) as catenary:
         line = read_line(path, catenary)
-        for remark in not_followed(line.table, parameter_value(catenary, line.parameters, "mesh.element")):
-            print(remark, file=sys.stderr)
         yield line, catenary.with_line(line.table)
 
 

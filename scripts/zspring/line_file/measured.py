@@ -16,7 +16,6 @@ from .schema import Irregularity, Measured
 from .statics import at_rest
 
 LEVEL = 1e-6  # m, that is no height
-FOLLOWED = 1e-4  # m, to which elements follow an irregularity
 SAME_LENGTH = 1e-6  # m
 MOST_ROUNDS = 50
 
@@ -130,21 +129,3 @@ def irregularity(given: Irregularity | None, length: float) -> np.ndarray:
     profile["x"], profile["height"] = position, height
     profile["slope"] = CubicSpline(position, height, bc_type=tuple(ends))(position, 1)
     return profile
-
-
-def not_followed(table: LineTable, element: float) -> list[str]:
-    """A line where elements of at most `element` m, cubic between their ends, do not follow the irregularity."""
-    x = table.stations(element)
-    points = table.profile[(table.profile["x"] >= x[0]) & (table.profile["x"] <= x[-1])]
-    if not len(points):
-        return []
-    from scipy.interpolate import CubicHermiteSpline  # slow to load
-
-    met = CubicHermiteSpline(x, table.irregularity(x), table.irregularity(x, 1))(points["x"])
-    missed = float(np.abs(met - points["height"]).max())
-    if missed < FOLLOWED:
-        return []
-    return [
-        f"warning: irregularity: pantographs meet it to {1e3 * missed:.2g} mm: elements of {element:g} m do not follow "
-        f"it; take smaller ones, mesh.element"
-    ]
