@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <memory>
 
 #include "common/failure.hpp"
@@ -23,9 +24,13 @@ using File = std::unique_ptr<std::FILE, Close>;
 
 #ifdef _WIN32
 constexpr bool windows = true;
-File open(const std::string& path) {  // UTF-8 first; some hosts give what the system's code page makes of a path
-  File file(_wfopen(std::filesystem::u8path(path).c_str(), L"rb"));
-  return file ? std::move(file) : File(std::fopen(path.c_str(), "rb"));
+// In UTF-8 first; some hosts give what the system's code page makes of a path.
+File open(const std::string& path) {
+  try {
+    if (std::FILE* file = _wfopen(std::filesystem::u8path(path).c_str(), L"rb")) return File(file);
+  } catch (const std::exception&) {  // it is not UTF-8
+  }
+  return File(std::fopen(path.c_str(), "rb"));
 }
 #else
 constexpr bool windows = false;
