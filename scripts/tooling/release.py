@@ -1,4 +1,4 @@
-"""Makes the release FMUs and the wheel that carries them; scripts/package starts it in .venv.
+"""Makes the release FMUs and the wheel that carries them, as WebAssembly too; scripts/package starts it in .venv.
 
     scripts/package [FOLDER]    FOLDER is where they go (dist)
 
@@ -15,6 +15,7 @@ import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import webassembly
 from bootstrap import BIN, BUILD, CMAKE, PYTHON, ROOT, environment
 from mach_o import make_reproducible
 from setup_tools import Runner, SetupError, lock
@@ -121,12 +122,21 @@ def write_fmus(builds: dict[str, Path], output: Path) -> list[Path]:
     return written
 
 
-def write_wheel(fmus: list[Path], output: Path, descriptor: int) -> Path:
-    """Write the wheel for any platform, with these FMUs inside."""
+def build_modules(descriptor: int) -> dict[str, Path]:
+    """The models as WebAssembly modules, by identifier. Raises SetupError."""
+    say("building the WebAssembly modules (one minute)")
+    log = RELEASE_BUILD / "webassembly.log"
+    log.unlink(missing_ok=True)
+    return webassembly.build(Runner(log, ROOT, environment(), descriptor))
+
+
+def write_wheel(fmus: list[Path], modules: dict[str, Path], output: Path, descriptor: int) -> Path:
+    """Write the wheel for any platform, with these FMUs and WebAssembly modules inside."""
     for old in output.glob("zspring-*.whl"):
         old.unlink()
     runner = Runner(RELEASE_BUILD / "wheel.log", ROOT, environment(), descriptor)
-    contents = [f"--config-settings=wheel.force-include.{fmu}=zspring/{fmu.name}" for fmu in fmus]
+    places = {fmu: fmu.name for fmu in fmus} | {module: f"explore/{module.name}" for module in modules.values()}
+    contents = [f"--config-settings=wheel.force-include.{path}=zspring/{place}" for path, place in places.items()]
     runner.run(
         "cannot build the wheel",
         [
@@ -155,9 +165,10 @@ def main() -> None:
     try:
         with lock(BUILD / "package.lock") as descriptor:
             builds = build_all(descriptor)
+            modules = build_modules(descriptor)
             output.mkdir(parents=True, exist_ok=True)
             fmus = write_fmus(builds, output)
-            written = [*fmus, write_wheel(fmus, output, descriptor)]
+            written = [*fmus, write_wheel(fmus, modules, output, descriptor)]
     except (SetupError, OSError) as error:
         sys.exit(f"package: {error}")
     except KeyboardInterrupt:

@@ -131,6 +131,8 @@ def test_wheel_carries_the_release():
     with zipfile.ZipFile(path) as wheel:
         for model in MODELS:
             assert wheel.read(f"zspring/{model}.fmu") == (DIST / f"{model}.fmu").read_bytes()
+            module = wheel.read(f"zspring/explore/{model}.wasm")
+            assert module.startswith(b"\0asm") and os.fsencode(ROOT) + b"/" not in module
         names = set(wheel.namelist())
     for file in (ROOT / "resources").glob("*/*.ssv"):
         assert f"zspring/{file.relative_to(ROOT).as_posix()}" in names
