@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..fmu import Fmu
-from ..line.journey import LineExtent, parameter_value
+from ..line.journey import LineExtent
 from ..line.limits import most_supports, near_wave_speed, of_series, untold_supports
 from ..line.quantities import Statistics
 from ..line.result import read_result
 from ..line.series import Series
 from ..line.statistics import statistics
-from ..line_file.measured import not_followed
 from ..page import Picture
 from . import plot
 from .edition import Case, Judgement, judge
@@ -64,8 +63,6 @@ class Passage:
                 "upper frame"
             )
         on = run.on(catenary)
-        if run.table:
-            lines += not_followed(run.table, parameter_value(on, run.line, "mesh.element"))
         if run.section.last > most_supports(on):
             lines += untold_supports(on, LineExtent.of(on, run.line))
         return [*lines, *near_wave_speed(on, run.line, run.speed / 3.6), *of_series(self.series, run.section)]
