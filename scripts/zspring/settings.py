@@ -32,6 +32,7 @@ else:
 
 # What must be, by pydantic's type of error and in its terms.
 ALLOWED = {
+    "bool_type": "true or false",
     "dict_type": "a table",
     "finite_number": "a finite number",
     "float_type": "a number",

@@ -14,6 +14,7 @@ import pytest
 from fmpy import read_model_description
 from lxml import etree
 
+from paths import ROOT
 from ssp_archive import archive, check
 from zspring.couple.ssp import LINE_ELEMENT, element_name
 from zspring.fmu import PANTOGRAPH, installed_fmu
@@ -60,15 +61,21 @@ def test_the_archive_keeps_the_rules_of_omsimulator(exported):
 
 
 def test_ecos_runs_the_archive_to_the_same_result(exported):
-    """Another tool's fixed-step algorithm, at every communication step, to the precision of files.
+    """Another tool's fixed-step algorithm, at every communication step, to the precision of files."""
+    check_in_ecos(*exported)
 
-    ecospy has wheels for Linux and Windows on x86-64.
-    """
+
+def test_ecos_runs_a_line_of_a_file_whose_table_it_has_to_locate(tmp_path):
+    for path, result in archive(tmp_path / "line.ssp", 1, ROOT / "resources/lines/stitched-synthetic.toml"):
+        check_in_ecos(path, result)
+
+
+def check_in_ecos(path: Path, result: LineResult) -> None:
+    """ecospy has wheels for Linux and Windows on x86-64."""
     if sys.platform == "linux":  # ecospy links libtbb.so.12 and leaves it to the system; PyPI's tbb has it
         ctypes.CDLL(f"{sys.prefix}/lib/libtbb.so.12", ctypes.RTLD_GLOBAL)
     from ecospy import EcosSimulation
 
-    path, result = exported
     names = [f"{element_name(i)}::contact.force" for i in range(result.position.shape[1])]
     names += [f"{LINE_ELEMENT}::pantograph[{i + 1}].wire_height" for i in range(len(names))]
     rows = []

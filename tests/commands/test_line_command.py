@@ -65,7 +65,7 @@ def test_check_tells_what_was_read(zspring, tmp_path):
     text = (LINES / "stitched-synthetic.toml").read_text(encoding="utf-8")
     (tmp_path / "line.toml").write_text(text + "\n[[span_exception]]\nspans = 2\nmissing = 4\n", encoding="utf-8")
     out = zspring("line", "check", "line.toml").splitlines()
-    assert out[0] == "Stitched line, synthetic: 10 spans, 625 m, 70 droppers, 9 stitch wires, 1 point mass"
+    assert out[0] == "Stitched, synthetic: 10 spans, 625 m, 70 droppers, 9 stitch wires, 1 point mass"
     assert any(line.split()[:5] == ["1,", "10", "65", "m", "7"] for line in out)
     (broken,) = (line for line in out if line.startswith("2 "))
     assert "0 to " in broken and broken.split()[-1] == "1"

@@ -15,17 +15,19 @@ from zspring.line.result import LineResult
 from zspring.line.run import LineRun
 from zspring.line.schemes import Coupling
 from zspring.line.system import System
+from zspring.line_file.chosen import ChosenLine, line_of
 
 SPEED = 250 / 3.6
 LINE = {"line.spans": 4, "steady_arm.mass": 0.5, "damping.mass": 0.0125, "contact_wire.tension": 22000.0}
 COULOMB = {"friction": 2, "static_force": 100.0}
 
 
-def archive(path: Path, count: int) -> Iterator[tuple[Path, LineResult]]:
-    """Write an archive of so many pantographs; yields its path and the run."""
+def archive(path: Path, count: int, line_file: Path | None = None) -> Iterator[tuple[Path, LineResult]]:
+    """Write an archive of so many pantographs, on a line by parameters or by a file; yields its path and the run."""
     journey = Journey(SPEED, 90.0, 150.0, 2e-3, 50.0, start_up="direct", uplift=15.0)
     with Fmu(installed_fmu(CATENARY)) as catenary, Fmu() as pantograph:
-        system = System(catenary, pantograph, LINE, [COULOMB] * count, journey, Coupling("parallel"))
+        line = line_of(str(line_file), catenary) if line_file else ChosenLine(catenary, LINE)
+        system = System(line.catenary, pantograph, line.parameters, [COULOMB] * count, journey, Coupling("parallel"))
         with LineRun(system) as run:
             write_ssp(run, path)
             run.finish()

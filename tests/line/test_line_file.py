@@ -185,7 +185,7 @@ EXCEPTION = "[[span_exception]]\nspans = 2\n"
         (with_change("EA = 2e5", "EA = 0"), "span 1, dropper 1: stiffness or EA = 0: must be above 0"),
         (with_change("EA = 2e5", "EA = 2e5\nstiffness = 1e5"), "[dropper]: EA and stiffness: give one of both"),
         (with_change("mass = 0.1\n", "mass = [0.1]\n"), "span 1: mass: 1 values for 5 droppers"),
-        (with_change("mass = 0.1\n", "mass = [0.1, -1]\n"), "[dropper] mass = [0.1, -1]: must be a number of at"),
+        (with_change("mass = 0.1\n", "mass = [0.1, -1]\n"), "[dropper] mass = [0.1, -1]: must be a number of 0"),
         (with_change("length = 50\n", ""), "span 1: length is missing"),
         (SMALL + "sag = 0.1\ndropper_length = 1", "[span]: dropper_length and sag: give one of both"),
         (SMALL + "dropper_length = 0", "span 1: dropper_length = 0: must be above 0"),

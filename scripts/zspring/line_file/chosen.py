@@ -41,7 +41,7 @@ def line_of(name_or_file: str | None, catenary: Fmu, but_not: Container[str] = (
         raise ZSpringError(f"{path}: no such file")
     line = read_line(path, catenary)
     own = {name: value for name, value in line.parameters.items() if name not in but_not}
-    return ChosenLine(catenary.with_line(line.table), own, line.file.name)
+    return ChosenLine(catenary.with_line(line.table), own, line.title)
 
 
 def chosen_line(

@@ -48,6 +48,11 @@ class Line:
     parameters: Mapping[str, Value]
     first_droppers: Sequence[int]
 
+    @property
+    def title(self) -> str:
+        """The name, which says that the line is synthetic."""
+        return self.file.name + " (synthetic)" * (self.file.synthetic and "synthetic" not in self.file.name.lower())
+
 
 def read_line(path: Path, catenary: Fmu) -> Line:
     """The line of a TOML file. Raises ZSpringError, one line with the file and the key or the span, for a bad one."""

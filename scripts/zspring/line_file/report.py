@@ -33,7 +33,7 @@ def summary(line: Line, droppers: AtRest) -> list[str]:
         *([file.description] if file.description else []),
         *(["synthetic: its numbers are those of no line there is"] if file.synthetic else []),
         *aligned([head, *([_numbers(spans), *row] for row, spans in rows.items())]),
-        f"kg: {', '.join(f'{name} {mass:.4g}' for name, mass in _masses(line, droppers) if mass > 0)}",
+        f"kg: {', '.join(f'{name} {_four(mass)}' for name, mass in _masses(line, droppers) if mass > 0)}",
     ]
 
 
@@ -60,6 +60,11 @@ def _span_row(line: Line, droppers: AtRest, span: int) -> tuple[str, ...]:
 def _range(values: np.ndarray, digits: int, unit: str) -> str:
     low, high = (f"{value:.{digits}f}" for value in (values.min(), values.max()))
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
+
+
+def _four(value: float) -> str:
+    """With four digits, and as many before the point as there are."""
+    return f"{value:.0f}" if value >= 1000 else f"{value:.4g}"
 
 
 def _counted(count: int, name: str) -> str:

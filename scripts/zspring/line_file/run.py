@@ -48,7 +48,7 @@ def draw_and_write(line: Line, catenary: Fmu, spans: tuple[int, int] | None, for
     found = elasticity(catenary, parameters, tqdm(places, unit=" places", disable=None), force)
     droppers = at_rest(catenary, parameters, table.droppers["x"])
     drawn = Drawn(
-        name=line.file.name + (" (synthetic)" if line.file.synthetic and "synthetic" not in line.file.name else ""),
+        name=line.title,
         table=table,
         between=(float(edges[0]), float(edges[-1])),
         wires=at_rest(catenary, parameters, close),

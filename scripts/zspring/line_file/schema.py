@@ -12,8 +12,10 @@ from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
 from ..parameter_sets import LINES
 from ..settings import BesidePath, Positive, Table, fitting, set_name
+from ..tables import LARGEST
 
 MOST_SPANS = 400
+LONGEST, HIGHEST, STEEPEST = 1000.0, 100.0, 0.5  # m of a span, m of what is above another, 1: no slips of units
 NotNegative = Annotated[float, Field(ge=0)]
 WholeNumbers = Annotated[
     list[int],
@@ -22,22 +24,22 @@ WholeNumbers = Annotated[
 ]
 
 
-def _each(least: float | None) -> PlainValidator:
+def _each(least: float, most: float) -> PlainValidator:
     """A number, or a list with one for each dropper of a span."""
 
     def check(content: Any) -> Any:
-        bound = "" if least is None else f" of at least {least:g}"
         for number in content if isinstance(content, list) else [content]:
-            fits = isinstance(number, (int, float)) and not isinstance(number, bool) and abs(number) < float("inf")
-            if not fits or (least is not None and number < least):
-                raise ValueError(f"must be a number{bound}, or a list with one for each dropper")
+            if isinstance(number, bool) or not isinstance(number, (int, float)) or not least <= number <= most:
+                raise ValueError(f"must be a number of {least:g} to {most:g}, or a list with one for each dropper")
         return content
 
     return PlainValidator(check)
 
 
-Each = Annotated[float | list[float], _each(None)]
-EachNotNegative = Annotated[float | list[float], _each(0.0)]
+Each = Annotated[float | list[float], _each(-HIGHEST, HIGHEST)]
+EachLength = Annotated[float | list[float], _each(0.0, HIGHEST)]
+EachNotNegative = Annotated[float | list[float], _each(0.0, LARGEST)]
+Height = Annotated[float, Field(gt=0, le=HIGHEST)]
 
 
 class Part(Table):
@@ -112,7 +114,7 @@ class Support(Part):
 
     refused: ClassVar = {"damping": "damping is Rayleigh's, one for the whole line: give [damping]"}
 
-    encumbrance: Positive | None = Field(default=None, description="m, of the messenger over the contact wire's height")
+    encumbrance: Height | None = Field(default=None, description="m, of the messenger over the contact wire's height")
     stiffness: NotNegative | None = Field(default=None, description="N/m, under the messenger")
 
 
@@ -136,13 +138,15 @@ class Span(Part):
     alternatives: ClassVar = ("sag",), ("dropper_length",)
     refused: ClassVar = {"encumbrance": "it is told of supports: give it in [support] or a [[support_exception]]"}
 
-    length: Positive | None = Field(default=None, description="m")
-    gradient: float | None = Field(default=None, description="1, rise of the contact wire's height over the span")
+    length: Annotated[float, Field(gt=0, le=LONGEST)] | None = Field(default=None, description="m")
+    gradient: Annotated[float, Field(ge=-STEEPEST, le=STEEPEST)] | None = Field(
+        default=None, description="1, rise of the contact wire's height over the span"
+    )
     droppers: Annotated[list[float], fitting("must be a list of distances in m")] | None = Field(
         default=None, description="m, of each from the span's begin"
     )
     sag: Each | None = Field(default=None, description="m, by how much the contact wire hangs lower there")
-    dropper_length: EachNotNegative | None = Field(
+    dropper_length: EachLength | None = Field(
         default=None, description="m, unstretched, from which the height comes out"
     )
     length_error: Each | None = Field(default=None, description="m, that a dropper is too long")
