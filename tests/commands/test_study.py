@@ -51,14 +51,21 @@ amplitudes = [2]
 frequencies = "3:9:0.5"
 """
 
-COUPLED = """
+COUPLED = f"""
 design = "latin-hypercube"
 samples = 24
 [vary]
-zspring.Mf = { from = 0.1, to = 0.4 }
+zspring.Mf = {{ from = 0.1, to = 0.4 }}
 [couple]
+line = "{(ROOT / "resources/lines/en-50318-2002.toml").as_posix()}"
 spans = [3, 3]
 step = 5e-4
+[irregularity]
+lines = 24
+dropper_length = 0.005
+contact_wire = 0.001
+wavelengths = [2, 60]
+exponent = 2
 """
 
 

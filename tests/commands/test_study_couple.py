@@ -139,6 +139,14 @@ def test_the_compared_get_the_same_cases_and_each_its_own_parameters(fmus, tmp_p
     assert other["m1"] == 7.51 and other["couple.speed"] == 200 and other["catenary.line.spans"] == 5
 
 
+def test_draws_of_an_identification_are_cases_of_runs(fmus, tmp_path):
+    (tmp_path / "draws.csv").write_text("zspring.Mf [N.m],zspring.k [N/mm]\n0.2,12\n0.3,13\n0.4,14\n")
+    settings = study_of('design = "list"\ndraws = "draws.csv"\n[couple]\nspeed = 200\n', fmus, tmp_path)
+    given = [settings.parameters_of(case) for case in make_cases(settings)]
+    assert [(each["zspring.Mf"], each["zspring.k"]) for each in given] == [(0.2, 12000), (0.3, 13000), (0.4, 14000)]
+    assert all(each["couple.speed"] == 200 for each in given)
+
+
 def test_what_a_result_must_not_be_read_without_is_told(fmus, tmp_path):
     text = f"{SHORT}[vary]\ncouple.speed = [320, 200]\n[couple]\nspans = [3, 4]\n"
     fast, slow = (values["remarks"] for values in measured(text, fmus, tmp_path))

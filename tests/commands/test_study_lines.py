@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,12 +15,13 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.signal import periodogram
 from scipy.stats import spearmanr, ttest_rel
 
-from commands import PNG, table, zspring
+from commands import PNG, in_process, table, zspring
 from paths import ROOT
 from zspring.errors import ZSpringError
 from zspring.fmu import CATENARY, Fmu, installed_fmu
 from zspring.line_file.design import read_line
 from zspring.line_table import NEVER_PULLS, PROFILE, LineTable
+from zspring.settings import tomllib
 from zspring.study.compare import Runner, difference_table, differences
 from zspring.study.coupled import CoupledQuantity
 from zspring.study.design import make_cases
@@ -25,6 +29,7 @@ from zspring.study.files import column_of
 from zspring.study.irregular import Irregularity, Roughness
 from zspring.study.sensitivity import correlation_doubts, correlations
 from zspring.study.settings import StudySettings, read_study
+from zspring.study.workers import StudyPlugin
 
 LINE = ROOT / "resources/lines/en-50318-2002.toml"
 GRID = f'design = "grid"\n[couple]\nline = "{LINE.as_posix()}"\n'
@@ -173,6 +178,24 @@ def test_each_of_the_compared_runs_along_the_same_lines(fmus, tmp_path):
         assert not catenary.home.exists()
     assert seen[0] == seen[1] and seen[2] == seen[3] and seen[0] != seen[2]
     assert 17000 < seen[0][1] < 23000 and seen[0][1] != 20000
+
+
+def test_a_worker_with_two_threads_computes_what_one_thread_does(fmus, tmp_path):
+    """Each case on a line of its own, whose table is in a folder of its own; the working folder stays."""
+    text = GRID + "spans = [3, 3]\n[vary]\ncouple.speed = [300]\n[irregularity]\nlines = 4\ndropper_length = 0.01\n"
+    settings = study_of(text, fmus, tmp_path)
+    given = [settings.parameters_of(case) for case in make_cases(settings)]
+    plugin = StudyPlugin("x", *(fmu.path.read_bytes() for fmu in fmus), settings.quantities)
+    plugin.setup(SimpleNamespace(local_directory=str(tmp_path)))
+    here = os.getcwd()
+    with ThreadPoolExecutor(2) as pool:
+        side_by_side = list(pool.map(plugin.run, given))
+    in_turn = [plugin.run(case) for case in given]
+    plugin.teardown(SimpleNamespace())
+    assert os.getcwd() == here and not list(tmp_path.glob("zspring-*"))
+    for each, other in zip(side_by_side, in_turn):
+        assert each["status"] == "ok" and each["mean_force [N]"] == other["mean_force [N]"]
+    assert len({each["mean_force [N]"] for each in in_turn}) == 4
 
 
 @pytest.mark.parametrize(
@@ -334,3 +357,47 @@ def test_what_goes_exactly_with_a_parameter_has_an_interval_that_ends_there(fmus
     rows = {n: {column_of(settings.variables["m1"]): str(7 + n / 9), "y": str(-n)} for n in range(9)}
     (found,) = correlations(settings, ["m1"], ["y"], rows)
     assert (found.value[0], found.low[0]) == (pytest.approx(-1), found.value[0]) and -1 < found.high[0] < 0
+
+
+# The example
+
+
+def test_the_examples_can_be_read_where_they_were_copied_to(fmus, tmp_path):
+    assert in_process("study", "--example", tmp_path)[0] == 0
+    settings = read_study(tmp_path / "study-friction.toml", *fmus)
+    cases = make_cases(settings)
+    assert len(cases) == 5 * 2 * 30 * 5 and next(iter(settings.compared)) == "Z-spring"
+    first = settings.parameters_of(cases[0])
+    assert (first["couple.speed"], first["couple.pantographs"], first["irregularity.line"]) == (200, 1, 1)
+    (quantity,) = settings.quantities
+    assert isinstance(quantity, CoupledQuantity) and quantity.line and len(quantity.line.boundaries) == 14
+    assert read_study(tmp_path / "study.toml", *fmus).design == "sobol"
+
+
+def test_the_matched_head_is_what_least_squares_make_of_the_z_spring_on_the_regular_line(tmp_path):
+    """Its force, by the head's balance, on stroke and rate, of the pantograph alone under the wire of a run."""
+    with open(ROOT / "resources/examples/study-friction.toml", "rb") as file:
+        matched = tomllib.load(file)["compare"]["matched and damped"]
+    speed, m1 = 250, 7.12
+    target = f"static_force={0.00097 * speed**2 + 70}"
+    options = ["--line", "benchmark-2015", "--speed", str(speed), "--stop", "400", "--set", target]
+    in_process("couple", *options, "--output", tmp_path / "run")
+    rows = table(tmp_path / "run/line.csv")
+    wire = np.array([float(row["wire height 1 [m]"]) for row in rows])
+    lines = (f"{row['time [s]']},{height}\n" for row, height in zip(rows, wire - wire[0]))
+    (tmp_path / "wire.csv").write_text("time [s],wire_height [m]\n" + "".join(lines))
+    options = ["--drive", "Wire", "--input", tmp_path / "wire.csv", "--step", "0.001", "--set", target]
+    in_process("simulate", *options, "--output", tmp_path / "alone")
+    alone = table(tmp_path / "alone/simulation.csv")
+
+    def column(name: str) -> np.ndarray:
+        return np.array([float(row[name]) for row in alone])
+
+    position = np.array([float(row["position 1 [m]"]) for row in rows])[: len(alone)]
+    inside = (position > 3 * 55) & (position < 7 * 55)
+    stroke, rate = (column(f"head.{x}") - column(f"upper_frame.{x}") for x in ("z [m]", "v [m/s]"))
+    force = column("contact.force [N]") + m1 * column("head.a [m/s2]")
+    on = np.column_stack([stroke, rate, np.ones(len(alone))])[inside]
+    stiffness, damping, _ = np.linalg.lstsq(on, -force[inside], rcond=None)[0]
+    assert matched["k1"] == pytest.approx(stiffness, rel=0.04)
+    assert matched["c1"] == pytest.approx(damping, rel=0.25)

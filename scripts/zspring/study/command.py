@@ -10,15 +10,26 @@ import click
 
 from ..errors import missing_extra
 from ..fmu import CATENARY, installed_fmu
-from ..options import POSITIVE, fmu_option, format_option, line_fmu_option, opened, option, output_option
+from ..options import (
+    POSITIVE,
+    copy_examples,
+    fmu_option,
+    format_option,
+    line_fmu_option,
+    opened,
+    option,
+    output_option,
+    settings_argument,
+)
 from ..records import claimed
 
+EXAMPLE = "study.toml", "study-friction.toml", "study-friction-line.toml"
 NEEDED = ("distributed", "SALib", "pyarrow")
 
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
-@output_option(described="results/study-NAME, by the name of FILE")
+@settings_argument("a Sobol design, and what friction changes on irregular lines, with its line")
+@output_option(described="results/study-SETTINGS")
 @option(
     "--scheduler",
     kind=str,
@@ -52,8 +63,10 @@ NEEDED = ("distributed", "SALib", "pyarrow")
 @format_option
 @fmu_option
 @line_fmu_option
-def study(file, output, scheduler, workers, timeout, line_of, parquet, suffix, fmu_path, line_fmu) -> None:
-    """Run the parameter study that the TOML file FILE describes.
+def study(
+    settings_path, example, output, scheduler, workers, timeout, line_of, parquet, suffix, fmu_path, line_fmu
+) -> None:
+    """Run the parameter study that SETTINGS.toml describes.
 
     \b
         design = "sobol"           # grid, list, latin-hypercube or sobol
@@ -91,14 +104,19 @@ def study(file, output, scheduler, workers, timeout, line_of, parquet, suffix, f
     Each result is a row of study.csv as soon as it is there. After Ctrl-C, or whatever else ended the study,
     the same command goes on. A case that fails is recorded with its reason. Writes summary figures, too.
     """
+    if example:
+        copy_examples(example, {name: f"examples/{name}" for name in EXAMPLE})
+        return
+    if settings_path is None:
+        raise click.UsageError("name a SETTINGS.toml, or a folder for an --example")
     absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if absent:
         raise missing_extra(absent, "study")
     from .run import Place, run_study, write_line
 
-    folder = output or Path("results") / f"study-{file.stem}"
+    folder = output or Path("results") / f"study-{settings_path.stem}"
     with opened(fmu_path) as fmu, opened(line_fmu or installed_fmu(CATENARY)) as catenary, claimed(folder):
         if line_of is not None:
-            write_line(fmu, catenary, file, folder, line_of)
+            write_line(fmu, catenary, settings_path, folder, line_of)
         else:
-            run_study(fmu, catenary, file, folder, Place(scheduler, workers, timeout), suffix, parquet)
+            run_study(fmu, catenary, settings_path, folder, Place(scheduler, workers, timeout), suffix, parquet)

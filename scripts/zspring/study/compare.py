@@ -63,9 +63,8 @@ class Difference:
 
 def conditions(settings: StudySettings) -> list[str]:
     """Names whose values are told apart: all of a grid on irregular lines, else speed and number of pantographs."""
-    if settings.design != "grid":
-        return []
-    return [name for name in settings.vary if settings.lines or name in (SPEED, COUNT)]
+    varied = [name for name, values in settings.vary.items() if isinstance(values, tuple) and len(values) > 1]
+    return [name for name in varied if settings.lines or name in (SPEED, COUNT)] if settings.design == "grid" else []
 
 
 def runners(cases: Sequence[Case], settings: StudySettings) -> list[Runner]:
@@ -148,7 +147,7 @@ def difference_table(settings: StudySettings, found: Sequence[Difference]) -> li
     told = conditions(settings)
     columns = list(dict.fromkeys(_without_count(told, each.condition) for each in shown))
     lines = [f"{label}, {unit or 1}: what {first} has more than the others, ± half of the {100 * SHARE:g} % interval"]
-    table = [["", *(", ".join(condition_texts(settings, told, condition)) for condition in columns)]]
+    table = [["", *(", ".join(condition_texts(settings, told, condition)) or "all cases" for condition in columns)]]
     last = None
     for runner, name in dict.fromkeys((each.runner, each.name) for each in shown):
         own = {_without_count(told, d.condition): d for d in shown if (d.runner, d.name) == (runner, name)}
@@ -157,7 +156,7 @@ def difference_table(settings: StudySettings, found: Sequence[Difference]) -> li
         table.append([f"more than {name}", *(_cell(own[c]) if c in own else "" for c in columns)])
         last = runner
     lines += aligned(table, right=True)
-    clear, intervals = sum(each.is_clear for each in found), sum(np.isfinite(each.half_width) for each in found)
+    clear, intervals = sum(each.is_clear for each in found), sum(each.half_width > 0 for each in found)
     if intervals:
         lines.append(
             f"*: on one side of 0, as {clear} of {intervals} intervals of all figures are; without any difference "

@@ -166,6 +166,7 @@ class StudyFile(Table):
     design: Literal["grid", "list", "latin-hypercube", "sobol"]
     samples: int = Field(0, ge=1, description="of sampled designs")
     seed: int = Field(1, ge=0, description="of sampled designs")
+    title: str = Field("", description="of the figures")
     parameter_set: Annotated[str, set_name(PANTOGRAPHS)] = Field("", alias="parameters")
     draws: BesidePath | None = Field(None, description="of `zspring identify`, instead of [vary]")
     vary: Annotated[dict[str, RangeOrValues], by_full_name(Range)] = Field({})

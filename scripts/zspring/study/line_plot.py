@@ -51,8 +51,8 @@ def distribution_figure(quantity: CoupledQuantity, compared: Mapping[str, Rows],
         axes.grid(True, linewidth=0.4, alpha=0.5)
     for axes in panels.flat[len(names) :]:
         axes.set_axis_off()
-    if panels[0, 0].get_legend_handles_labels()[0]:
-        panels[0, 0].legend(fontsize=7)
+    if (shown_by := panels[0, 0].get_legend_handles_labels())[0]:
+        figure.legend(*shown_by, loc="outside lower center", ncols=5, fontsize=7)
     figure.suptitle(title, fontsize=10)
     figure.supylabel("share of the cases up to the value", fontsize=9)
     return figure
@@ -187,7 +187,7 @@ def _finish(figure: Figure, panels: Panels, title: str, label: str) -> None:
         if name == last_figure:
             axes.set_xlabel(label, fontsize=8)
     shown_by = panels[first_figure, first_runner].get_legend_handles_labels()
-    figure.legend(*shown_by, loc="outside lower center", ncols=4, fontsize=8)
+    figure.legend(*shown_by, loc="outside lower center", ncols=5, fontsize=8)
     figure.suptitle(title, fontsize=10)
 
 

@@ -31,7 +31,7 @@ class Written:
         self._settings, self._cases, self._record, self._suffix = settings, cases, record, suffix
         self._rows = record.rows
         varied = ", ".join(settings.vary) or ", ".join(settings.compared)
-        self._title = f"Parameter study, {settings.design}, of {varied}{note}"
+        self._title = (settings.title or f"Parameter study, {settings.design}, of {varied}") + note
         self.paths = [record.path]
 
     def all(self) -> list[str]:

@@ -43,6 +43,7 @@ class StudySettings:
     compared: Mapping[str, Parameters] = field(default_factory=dict)  # by name, in place of `common`; or none
     variables: Variables = field(default_factory=lambda: Variables([]))  # of all that can vary
     lines: int = 0  # irregular ones; 0: that of the design alone
+    title: str = ""  # of the figures, which it changes alone
 
     @property
     def names(self) -> list[str]:
@@ -132,7 +133,9 @@ def read_study(path: Path, fmu: Fmu, catenary: Fmu | None = None) -> StudySettin
         if compared:
             variables = Variables([*variables, choice_variable(COMPARED, compared)])
         lines = file.irregularity.lines if file.irregularity else 0
-        return StudySettings(file.design, file.samples, file.seed, vary, whole, quantities, compared, variables, lines)
+        return StudySettings(
+            file.design, file.samples, file.seed, vary, whole, quantities, compared, variables, lines, file.title
+        )
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,24 @@ OK, FAILED = "ok", "failed"
 Result = dict[str, Any]  # "status", "seconds" and "CPU", and values by column
 
 
+class SharedFmu(Fmu):
+    """An FMU for several threads, in which instances are made one after the other: it changes the working folder.
+
+    making  held meanwhile, by all FMUs of a process
+    """
+
+    def __init__(self, path: Path, unpack_in: Path, making: threading.Lock):
+        super().__init__(path, unpack_in)
+        self._making = making
+
+    @contextmanager
+    def instances(self, count: int = 1) -> Iterator[list[Instance]]:
+        with ExitStack() as stack:
+            with self._making:
+                made = stack.enter_context(super().instances(count))
+            yield made
+
+
 class StudyPlugin(WorkerPlugin):
     """One study on a worker; the scheduler gives it to each worker, those that come later included.
 
@@ -45,16 +63,18 @@ class StudyPlugin(WorkerPlugin):
         folder = Path(worker.local_directory)
         self._stack = ExitStack()
         self._fmus: list[Fmu] = []
+        making = threading.Lock()
         for content in self._contents:
             path = folder / f"{hashlib.sha256(content).hexdigest()}.fmu"
             path.write_bytes(content)
-            self._fmus.append(self._stack.enter_context(Fmu(path, unpack_in=folder)))
+            self._fmus.append(self._stack.enter_context(SharedFmu(path, folder, making)))
         self._free: list[Instance] = []
         self._lock = threading.Lock()
         self._running, self._is_over = 0, False
         for fmu in self._fmus:
-            with fmu.instances():
-                pass  # loads the library, so that a wrong platform shows here
+            # Loads the library, so that a wrong platform shows here, and for good: each loading costs 70 kB that the
+            # runtime library of C++ within it never gives back.
+            self._stack.enter_context(fmu.instances())
 
     def teardown(self, worker: Worker) -> None:
         """Free all, now or, as a cancelled case runs on to its end, after that."""
