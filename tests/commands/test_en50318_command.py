@@ -439,6 +439,10 @@ def test_the_empty_edition_is_written_once(tmp_path):
         (["--series", "long.csv", "--speed", "180,200"], "--speed: 2 values: must be one"),
         (["--speed", "250"], "--speed is for --series, --line-test and --line"),
         (["--spacing", "100"], "--spacing is for our runs on --line"),
+        (
+            ["--quick", "--band", "0:0.5"],
+            "250 km/h: band of 0 to 0.5 Hz: the run of 7.78 s is too short for it: at least 10 s",
+        ),
         (["--quick", "--point", "600"], "250 km/h: uplift at 600 m: must be in the line of 600 m"),
         (["--quick", *(f"--point={x}" for x in range(1, 10))], "9 points with uplifts: must be at most 8"),
     ],

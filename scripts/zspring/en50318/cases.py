@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..line.journey import Journey, LineExtent, parameter_value
+from ..line.journey import FittedJourney, Journey, LineExtent, parameter_value
 from ..line.quantities import band_of
 from ..line.series import BAND
-from ..line.statistics import Section
+from ..line.statistics import SHORTEST, Section
 from ..line.system import most_points
 from ..line_file.chosen import ChosenLine, line_of
 from .edition import Case, Edition
@@ -35,9 +35,10 @@ def case_run(group: str, of: str, case: Case, line: ChosenLine, pantograph: Para
     """The run of a case, whose series is kept. Raises ZSpringError where spans, points or bands do not fit."""
     catenary, extent = line.catenary, LineExtent.of(line.catenary, line.parameters)
     section = section_of(case, extent)
+    journey = extent.complete(Journey(case.speed / 3.6, spacing=case.spacing or 0.0), 2 if case.spacing else 1)
     if case.spacing:
-        _require_room(case, section, extent)
-    _require_told(case, catenary, extent)
+        _require_room(case, section, extent, journey)
+    _require_told(case, catenary, extent, journey)
     target = case.target
     run = Run(
         group,
@@ -83,9 +84,8 @@ def _finer(run: Run, catenary: Fmu) -> Run:
     return replace(run, step=FINE_STEP, line={**run.line, **line}, pantograph=pantograph)
 
 
-def _require_room(case: Case, section: Section, extent: LineExtent) -> None:
+def _require_room(case: Case, section: Section, extent: LineExtent, journey: FittedJourney) -> None:
     """Raises ZSpringError where not both pantographs have started up before the section, or one has not left it."""
-    journey = extent.complete(Journey(case.speed / 3.6, spacing=case.spacing or 0.0), 2)
     low, high = journey.start + extent.run_up(journey.start), journey.stop - journey.spacing
     begin, end = section.bounds
     if begin < low or end > high:
@@ -95,15 +95,21 @@ def _require_room(case: Case, section: Section, extent: LineExtent) -> None:
         )
 
 
-def _require_told(case: Case, catenary: Fmu, extent: LineExtent) -> None:
+def _require_told(case: Case, catenary: Fmu, extent: LineExtent, journey: FittedJourney) -> None:
     """Raises ZSpringError for a point or a band of the case that a run does not tell."""
     if len(case.points) > (most := most_points(catenary)):
         raise ZSpringError(f"{case.title}: {len(case.points)} points with uplifts: must be at most {most}")
     for point in case.points:
         if not 0 < point < extent.length:
             raise ZSpringError(f"{case.title}: uplift at {point:g} m: must be in the line of {extent.length:g} m")
-    for _, high in filter(None, map(band_of, case.further)):
+    duration = (journey.stop - journey.start) / journey.speed
+    for low, high in filter(None, map(band_of, case.further)):
         if high > FINE_UNTIL:
             raise ZSpringError(
                 f"{case.title}: band up to {high:g} Hz: must be at most {FINE_UNTIL:g} Hz, where mesh and step end"
+            )
+        if duration < (least := SHORTEST / (low or high)):
+            raise ZSpringError(
+                f"{case.title}: band of {low:g} to {high:g} Hz: the run of {duration:.3g} s is too short for it: "
+                f"at least {least:.3g} s"
             )
