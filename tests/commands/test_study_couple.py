@@ -152,6 +152,8 @@ def test_what_a_result_must_not_be_read_without_is_told(fmus, tmp_path):
     fast, slow = (values["remarks"] for values in measured(text, fmus, tmp_path))
     assert "0.73 of the contact wire's wave speed" in fast and "far end" not in fast
     assert "pantograph 1: what is evaluated goes to 240 m, but from 198.7 m on" in slow and "wave speed" not in slow
+    (early,) = measured(f"{SHORT}[vary]\ncouple.speed = [250]\n[couple]\nstart = 70\nspans = [3, 3]\n", fmus, tmp_path)
+    assert early["remarks"] == "pantograph 1: what is evaluated begins at 120 m, but the start-up takes until 130 m"
 
 
 @pytest.mark.parametrize(
@@ -172,6 +174,14 @@ def test_what_a_result_must_not_be_read_without_is_told(fmus, tmp_path):
             r"speed: must be in \[vary\] or in \[couple\], not in both",
         ),
         ("[vary]\nm1 = [7]\n[couple]\n[compare]\na = { m1 = 8 }", r"a: m1: must be in \[vary\] or in \[compare\]"),
+        (
+            '[vary]\nm1 = [7]\n[couple]\nstatic_law = "AC"\n[compare]\na = { static_force = 80 }',
+            "a: static_force and static_law: give one",
+        ),
+        (
+            '[vary]\nm1 = [7]\n[set]\nstatic_force = 80\n[couple]\nstatic_law = "AC"',
+            r"static_force and \[couple\] static_law",
+        ),
         ("[vary]\nm1 = [7]\n[static]\namplitudes = [0.01]\n[compare]\na = {}", r"\[compare\]: needs \[couple\]"),
     ],
 )

@@ -12,7 +12,7 @@ from tqdm import tqdm
 from ..errors import ZSpringError, tell
 from ..heads import synthetic_note
 from ..interrupt import Interrupted
-from ..line.evaluated import sections
+from ..line.evaluated import of_start_up, sections
 from ..line.limits import near_wave_speed, of_series, untold_supports
 from ..line.mean_force import run_aimed
 from ..line.result import LineResult, write_result
@@ -96,7 +96,8 @@ def run_and_write(
         filtered = low_pass(result.contact_force, system.journey.step)
         chosen = sections(result, extent, spans)
         print(*summary(result, chosen), sep="\n")
-        remarks += [line for i, section in enumerate(chosen) for line in of_series(result.series(i), section)]
+        for i, section in enumerate(chosen):
+            remarks += [*of_start_up(result, i, section, extent), *of_series(result.series(i), section)]
     except ZSpringError as error:
         filtered = None
         print(f"no statistics: {error}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..errors import ZSpringError
-from .journey import LineExtent
+from .journey import SAME_PLACE, LineExtent
 from .result import LineResult
 from .statistics import Section
 
@@ -48,6 +48,16 @@ def sections(result: LineResult, line: LineExtent, spans: tuple[int, int] | None
                 f"{until:.4g} m, where the far end begins to tell: take a longer line (line.spans), or choose --spans"
             )
     return found
+
+
+def of_start_up(result: LineResult, i: int, section: Section | None, line: LineExtent) -> list[str]:
+    """A line for a section in which pantograph i still starts up."""
+    if section is None or section.bounds[0] >= (end := _started(result, i, line)) - SAME_PLACE:
+        return []
+    return [
+        f"warning: pantograph {i + 1}: what is evaluated begins at {section.bounds[0]:.4g} m, but the start-up takes "
+        f"until {end:.4g} m"
+    ]
 
 
 def stop_behind(section: Section, line: LineExtent, speed: float, behind: float = 0.0) -> float:

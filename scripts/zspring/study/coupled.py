@@ -10,7 +10,7 @@ from typing import Any
 
 from ..errors import ZSpringError
 from ..fmu import Fmu
-from ..line.evaluated import sections, stop_behind
+from ..line.evaluated import of_start_up, sections, stop_behind
 from ..line.journey import MASSES, START_UPS, Journey, parameter_value
 from ..line.limits import near_wave_speed, of_bands, of_series, untold_supports
 from ..line.mean_force import STANDING, mean_force, run_aimed, static_uplifts
@@ -128,7 +128,7 @@ class CoupledQuantity:
             series = result.series(i)
             found = statistics(series, section, further=further)
             values |= {self.column(figure, i): found[figure] for figure in self.figures}
-            remarks += of_series(series, section)
+            remarks += [*of_start_up(result, i, section, extent), *of_series(series, section)]
             where = (section.first, section.last) if section else ("", "")
             values |= {self._column(*each, i): value for each, value in zip(ALONG, (uplifts[i], *where))}
         return {**values, REMARKS: "; ".join(remark.removeprefix(_WARNING) for remark in remarks)}

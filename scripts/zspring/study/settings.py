@@ -165,6 +165,8 @@ class _Sets:
         for name in given:
             if name in self.but_not:
                 raise ZSpringError(f"{name}: must be in [vary] or in [compare], not in both")
+        if "static_force" in given and f"{COUPLE}static_law" in {*self.common, *self.but_not, *given}:
+            raise ZSpringError("static_force and static_law: give one of them")
         return {**self.whole(own), **{name: value_of(variables, name, value) for name, value in given.items()}}
 
 
