@@ -170,6 +170,12 @@ def _are_units(row: Sequence[str]) -> bool:
     return any(map(str.isalpha, "".join(texts))) and all(map(is_unit, texts))
 
 
+def read_head(path: Path) -> dict[str, str]:
+    """The remarks `# NAME: VALUE` above a table, without reading that."""
+    with path.open(encoding="utf-8") as file:
+        return _head(file)
+
+
 def read_rows(path: Path) -> tuple[dict[str, str], list[dict[str, str]]]:
     """Head, and rows by label, of a file that TableFile wrote, without a last line that is not complete."""
     lines = [line for line in _text(path).splitlines(keepends=True) if line.endswith("\n")]

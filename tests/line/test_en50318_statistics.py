@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from zspring.errors import ZSpringError
+from zspring.line.limits import untold_middles
 from zspring.line.quantities import band_figure, described, is_figure, point_figure, points_of
 from zspring.line.series import Series
 from zspring.line.statistics import Section, low_pass, statistics
@@ -182,6 +183,8 @@ def test_uplift_at_mid_span_and_at_points_is_that_of_the_wire_there():
     moved = statistics(known.moved(10.0), Section.alike(3, 8, 70.0, 10.0), further=["uplift_at_310"])
     assert (moved["midspan_uplift"], moved["uplift_at_310"]) == pytest.approx((50, 300), abs=0.01)
     assert np.isnan(statistics(known)["midspan_uplift"])  # no section, no spans
+    assert "is that of 2 of the 6 spans" in untold_middles(known, Section.alike(3, 8, 70.0))[0]
+    assert not untold_middles(known, Section.alike(3, 4, 70.0))
 
 
 def test_spans_outside_the_line_are_refused():

@@ -287,6 +287,11 @@ def test_installed_lengths_are_those_under_load(tmp_path, catenary):
     [
         ("span,dropper,height [m]\n1,1,5.3", "", "[measured] datum is missing"),
         ("span,dropper,length [m]\n1,1,1.3", "", "[measured] lengths is missing"),
+        (
+            "span,dropper,height [m]\n1,1,5.3",
+            "datum = 5.3\n[[span_exception]]\nspans = 2\nlength_error = 0.02",
+            "[measured] heights are those of the contact wire at rest, which dropper_length, length_error and missing",
+        ),
         ("span,dropper,length [m],height [m]\n1,1,1.3,5", "", 'has heights and lengths, of which one makes the other'),
         ("span,dropper,height [m]\n1,1,5", 'use = "lengths"', "no column 'length'"),
         ("span,dropper\n1,1", "", "no column 'height' and no column 'length'"),

@@ -6,10 +6,12 @@ import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from ..errors import ZSpringError
 from ..line.quantities import FIGURES
 from ..records import Record
+from ..tables import read_head
 from .plan import Run
-from .workers import Finished
+from .workers import OF_RUN, Finished
 
 FIGURE_COLUMNS = {name: f"{name} [{unit}]" if unit else name for name, (_, unit, _) in FIGURES.items()}
 SPANS = 4  # of a section at most, of which the figures by span are kept
@@ -39,9 +41,24 @@ def run_record(path: Path, head: Mapping[str, str]) -> Record[Finished]:
 
 
 def missing(record: Record[Finished], runs: Iterable[Run]) -> list[Run]:
-    """Runs whose figures or series are not there."""
+    """Runs whose figures or series are not there. Raises ZSpringError where two would write one file.
+
+    A series of that name may be another run's: of other settings, or of another line or pantograph under its name.
+    """
     folder, found = record.path.parent, {finished.key for finished in record.results}
-    return [run for run in runs if run.key not in found or (run.series and not (folder / run.series).exists())]
+    runs, files = list(runs), dict[str, Run]()
+    for run in runs:
+        if run.series and files.setdefault(run.series, run).key != run.key:
+            first = files[run.series]
+            raise ZSpringError(
+                f"{first.label!r} and {run.label!r} of {run.of} would both be {run.series}: name them otherwise"
+            )
+    return [run for run in runs if run.key not in found or (run.series and not _is_of(folder / run.series, run))]
+
+
+def _is_of(series: Path, run: Run) -> bool:
+    """Whether the file is there, and the run's."""
+    return series.exists() and read_head(series).get(OF_RUN) == run.key
 
 
 def put_in_order(record: Record[Finished], runs: Iterable[Run]) -> None:

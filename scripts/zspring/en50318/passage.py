@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..fmu import Fmu
 from ..line.journey import LineExtent
-from ..line.limits import most_supports, near_wave_speed, of_series, untold_supports
+from ..line.limits import most_supports, near_wave_speed, of_series, untold_middles, untold_supports
 from ..line.quantities import Statistics
 from ..line.result import read_result
 from ..line.series import Series
@@ -65,6 +65,7 @@ class Passage:
         on = run.on(catenary)
         if run.section.last > most_supports(on):
             lines += untold_supports(on, LineExtent.of(on, run.line))
+        lines += untold_middles(self.series, run.section)
         return [*lines, *near_wave_speed(on, run.line, run.speed / 3.6), *of_series(self.series, run.section)]
 
 

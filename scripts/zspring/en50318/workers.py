@@ -67,6 +67,7 @@ def run_all(
                     raise ZSpringError("a process of the runs was ended from outside") from None
 
 
+OF_RUN = "run"  # in the head of a series: the key of the run that it is of
 _fmus: list[Fmu] = []  # of this process: catenary, pantograph
 
 
@@ -105,7 +106,7 @@ def _execute(run: Run, folder: Path) -> Finished:
     if run.series:
         path = folder / run.series
         unfinished = path.with_name(f"unfinished-{path.name}")
-        write_result(results[-1], unfinished)
+        write_result(replace(results[-1], settings={**results[-1].settings, OF_RUN: run.key}), unfinished)
         os.replace(unfinished, path)
     told = run.group, run.of, run.label, repr(run.speed), str(run.section)
     seconds = sum(result.elapsed for result in results)

@@ -9,7 +9,7 @@ from ..variables import Value
 from .journey import LineExtent
 from .quantities import band_of, described
 from .series import BAND, Series
-from .statistics import Section
+from .statistics import Section, is_middle
 from .waves import wave_speed
 
 NEAR_WAVE_SPEED = 0.7  # of the contact wire's wave speed: what papers quote from EN 50119 as the limit of operation
@@ -52,6 +52,17 @@ def of_bands(names: Iterable[str]) -> list[str]:
         "which no data here tell"
         for name, (_, high) in bands.items()
         if high > BAND
+    ]
+
+
+def untold_middles(series: Series, section: Section) -> list[str]:
+    """A line where the uplift at mid-span is not that of all spans, as not all of them were watched."""
+    spans = section.single_spans()
+    told = sum(any(is_middle(position, span) for position in series.points) for span in spans)
+    if told in (0, len(spans)):
+        return []
+    return [
+        f"{series.name}: the largest uplift at mid-span is that of {told} of the {len(spans)} spans, which were watched"
     ]
 
 

@@ -172,10 +172,15 @@ def _at_supports(series: Series, section: Section | None) -> Iterator[np.ndarray
 def _at_middles(series: Series, section: Section | None) -> Iterator[np.ndarray]:
     """Uplift of each point at the middle of one of the section's spans. (n,) m"""
     for span in section.single_spans() if section else ():
-        low, high = span.bounds
         for position, values in series.points.items():
-            if abs(position - 0.5 * (low + high)) <= MIDDLE * (high - low):
+            if is_middle(position, span):
                 yield values
+
+
+def is_middle(position: float, span: Section) -> bool:
+    """Whether a place, m, is at the middle of a single span."""
+    low, high = span.bounds
+    return abs(position - 0.5 * (low + high)) <= MIDDLE * (high - low)
 
 
 def _highest(uplifts: Iterable[np.ndarray]) -> float:

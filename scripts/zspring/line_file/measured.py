@@ -47,6 +47,11 @@ def put_measured(measured: Measured, droppers: np.ndarray, first: Sequence[int])
         )
     if use == "lengths" and measured.lengths is None:
         raise ZSpringError('[measured] lengths is missing: "unstretched", or "installed" if under load')
+    if use == "heights" and (np.any(droppers["length"] > 0) or np.any(droppers["length_error"] != 0)):
+        raise ZSpringError(
+            "[measured] heights are those of the contact wire at rest, which dropper_length, length_error and missing "
+            "would change: leave these out"
+        )
     values = table.numbers(both[use], "m", gaps=True)
     seen, put = set(), np.zeros(len(droppers), bool)
     for line, span, number, value in zip(table.lines, spans, numbers, values):
@@ -63,7 +68,7 @@ def put_measured(measured: Measured, droppers: np.ndarray, first: Sequence[int])
         place = begin + int(number) - 1
         dropper, put[place] = droppers[place : place + 1], True
         if use == "heights":
-            dropper["height"], dropper["length"] = value - float(measured.datum or 0.0), 0.0
+            dropper["height"] = value - float(measured.datum or 0.0)
         elif value > 0:
             dropper["length"] = value
         else:
