@@ -473,11 +473,11 @@ def test_a_series_of_another_run_is_none_of_this_one(tmp_path):
     for force in (100, 120, 100):
         path.write_text((EDITION + CASE.format(speed=120)).replace("static_force = 100", f"static_force = {force}"))
         out, _ = zspring(tmp_path, "en50318", "--quick", "--edition", "edition.toml", "--output", "out")
-        assert float(figures(out)["mean force, N"]) == pytest.approx(force, abs=5)
+        assert float(re.findall(r"^mean force, N +([\d.]+)", out, re.MULTILINE)[0]) == pytest.approx(force, abs=5)
 
 
 def test_cases_whose_series_would_be_one_file_are_refused(tmp_path):
     cases = "".join(CASE.format(speed=120).replace('"120"', f'"120, {sign}10 N"') for sign in "+-")
     (edition(tmp_path, 120)).write_text(EDITION + cases)
-    _, error = zspring(tmp_path, "en50318", "--quick", "--edition", "edition.toml", "--output", "out", status=1)
+    _, error = zspring(tmp_path, "en50318", "--edition", "edition.toml", "--output", "out", status=1)
     assert "'120, +10 N' and '120, -10 N' of Slow and fast would both be slow-and-fast-120-10-n.csv" in error
