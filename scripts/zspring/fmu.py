@@ -75,9 +75,12 @@ class Fmu:
         self.line: LineTable | None = LineTable.read(own) if own.is_file() else None
 
     def with_line(self, line: LineTable) -> Fmu:
-        """The same FMU, while it is open, with another line in its resources, as instances are told by their GUID."""
+        """The same FMU, while it is open, with another line in its resources, as instances are told by their GUID.
+
+        In a folder of its own, also where the line is the same: whoever has it can remove it.
+        """
         other = copy(self)
-        other.line, other.home = line, self.folder / f"line-{line.digest}"
+        other.line, other.home = line, Path(tempfile.mkdtemp(prefix="line-", dir=self.folder))
         other.guid = line_table.guid(self.description.guid, line)
         line.write(other.home / "resources" / line_table.FILE)
         return other

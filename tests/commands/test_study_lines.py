@@ -178,6 +178,11 @@ def test_each_of_the_compared_runs_along_the_same_lines(fmus, tmp_path):
         assert not catenary.home.exists()
     assert seen[0] == seen[1] and seen[2] == seen[3] and seen[0] != seen[2]
     assert 17000 < seen[0][1] < 23000 and seen[0][1] != 20000
+    given = settings.parameters_of(cases[0])
+    with quantity.on_line(fmus[1], given) as (catenary, _):
+        with quantity.on_line(fmus[1], given) as (beside, _):  # as another thread does
+            assert beside.guid == catenary.guid
+        assert (catenary.home / "resources/line.table").is_file()
 
 
 def test_a_worker_with_two_threads_computes_what_one_thread_does(fmus, tmp_path):
