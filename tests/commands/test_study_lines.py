@@ -112,6 +112,26 @@ def test_a_contact_wire_has_the_spectrum_told(design):
     assert heights.std() == pytest.approx(0.002, rel=0.03)
 
 
+@pytest.mark.parametrize("shortest, longest", [(310.0, 330.0), (1.0, 600.0), (590.0, 600.0)])
+def test_a_contact_wire_has_the_deviation_told_whatever_its_waves(design, shortest, longest):
+    """Also where few waves, or none, repeat after twice the line's length: to four errors of the mean of 400 lines."""
+    wavenumber = np.geomspace(1 / longest, 1 / shortest, 400)
+    spectrum = wavenumber**-2.0
+    spectrum /= np.trapezoid(spectrum, wavenumber)
+    lines = Irregularity(design, 1, Roughness(wavenumber, spectrum))
+    squares = [np.mean(lines.line(n, {"contact_wire": 0.002}).profile["height"] ** 2) for n in range(1, 401)]
+    error = np.std(squares) / len(squares) ** 0.5
+    assert error < 0.06 * 0.002**2 and np.mean(squares) == pytest.approx(0.002**2, abs=4 * error)
+
+
+@pytest.mark.parametrize("wavenumber, told", [([1 / 601, 1], "601 m"), ([0, 1], "inf m")])
+def test_waves_longer_than_the_line_are_refused(design, wavenumber, told):
+    told = f"contact_wire: waves of up to {told}: must be no longer than the line, 600 m"
+    with pytest.raises(ZSpringError, match=told):
+        Irregularity(design, 1, Roughness(np.array(wavenumber), np.ones(2)))
+    Irregularity(design, 1, Roughness(np.array([0, 1 / 600, 1]), np.array([0.0, 0.0, 1.0])))
+
+
 def test_between_its_points_a_contact_wire_is_as_smooth_as_its_waves(design):
     """The cubic between two points against the wave through many: less than 1 % off where waves are shortest."""
     wavenumber = np.array([0.45, 0.5])
@@ -124,7 +144,7 @@ def test_between_its_points_a_contact_wire_is_as_smooth_as_its_waves(design):
 
 
 def test_a_measured_profile_is_laid_along_each_line_from_another_place(design):
-    x = np.arange(0, 1500, 0.5)
+    x = np.arange(0, 1850, 0.5)
     measured = np.zeros(len(x), PROFILE)
     measured["x"], measured["height"], measured["slope"] = x, np.sin(x / 9), np.cos(x / 9) / 9
     lines = Irregularity(design, 1, Roughness(profile=measured))
@@ -135,8 +155,10 @@ def test_a_measured_profile_is_laid_along_each_line_from_another_place(design):
         (a, b, _), rest, *_ = np.linalg.lstsq(waves, profile["height"], rcond=None)
         assert np.hypot(a, b) == pytest.approx(0.003, rel=1e-9) and rest[0] < 1e-20
     assert abs(first["height"][3] - second["height"][3]) > 1e-5
-    with pytest.raises(ZSpringError, match="profile: 500 m: must be as long as the line at least, 600 m"):
-        Irregularity(design, 1, Roughness(profile=measured[x <= 500])).line(1, {"contact_wire": 0.003})
+    with pytest.raises(ZSpringError, match="profile: 1799 m: must be at least 3 times as long as the line, 1800 m"):
+        Irregularity(design, 1, Roughness(profile=measured[x <= 1799]))
+    told = "profile: 3.1 times as long as the line, 4 lines cut out of it overlap"
+    assert not lines.doubts(3) and lines.doubts(4)[0].startswith(told)
 
 
 # Studies

@@ -61,6 +61,8 @@ class Written:
 
     def _on_line(self, quantity: CoupledQuantity) -> list[str]:
         settings, cases, title, lines = self._settings, self._cases, self._title, list[str]()
+        if quantity.irregularity:
+            lines += quantity.irregularity.doubts(settings.lines)
         self._save(distribution_figure(quantity, self._compared(), title), "distribution")
         if conditions(settings):
             self._save(sweep_figure(settings, quantity, cases, self._rows, title), "sweep")

@@ -210,7 +210,7 @@ def _irregularity(
             raise ZSpringError("contact_wire: the line file has an irregularity of its own")
         if _SLACK & told not in (set(), _SLACK):
             raise ZSpringError("slack and slack_by: one alone does nothing")
-    return Irregularity(line, given.seed, rough), values
+        return Irregularity(line, given.seed, rough), values
 
 
 def _most(name: str, vary: Mapping[str, Range | tuple[Value, ...]], sets: Sequence[Parameters]) -> int:
