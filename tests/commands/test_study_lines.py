@@ -228,8 +228,6 @@ def test_a_worker_with_two_threads_computes_what_one_thread_does(fmus, tmp_path)
 @pytest.mark.parametrize(
     "design, expected",
     [
-        ('design = "latin-hypercube"\nsamples = 5\n[vary]\nm1 = { from = 7, to = 8 }', [1, 2, 3, 1, 2]),
-        ('design = "sobol"\nsamples = 2\n[vary]\nm1 = { from = 7, to = 8 }', [1, 1, 1, 2, 2, 2]),
         ('design = "grid"\n[vary]\nm1 = [7, 8]', [1, 2, 3, 1, 2, 3]),
         ('design = "list"\n[vary]\nm1 = [7, 8]', [1, 2, 3, 1, 2, 3]),
     ],
@@ -237,6 +235,19 @@ def test_a_worker_with_two_threads_computes_what_one_thread_does(fmus, tmp_path)
 def test_which_line_a_case_runs_along(fmus, tmp_path, design, expected):
     text = f'{design}\n[couple]\nline = "{LINE.as_posix()}"\n[irregularity]\nlines = 3\n'
     assert [case["irregularity.line"] for case in make_cases(study_of(text, fmus, tmp_path))] == expected
+
+
+@pytest.mark.parametrize("design, block", [("latin-hypercube", 1), ("sobol", 4)])
+def test_lines_are_drawn_evenly_and_do_not_go_with_the_parameters(fmus, tmp_path, design, block):
+    """Along each of 8 lines 16 blocks, whose first and second parameter are spread over most of their range."""
+    text = f'design = "{design}"\nsamples = 128\n[vary]\nm1 = {{ from = 7, to = 8 }}\nm2 = {{ from = 7, to = 8 }}\n'
+    text += f'[couple]\nline = "{LINE.as_posix()}"\n[irregularity]\nlines = 8\n'
+    cases = make_cases(study_of(text, fmus, tmp_path))
+    lines = np.array([case["irregularity.line"] for case in cases]).reshape(-1, block)
+    assert np.all(lines == lines[:, :1]) and np.bincount(lines[:, 0]).tolist() == [0, *[16] * 8]
+    for name in ("m1", "m2"):
+        first = np.array([float(case[name]) for case in cases[::block]])
+        assert min(np.ptp(first[lines[:, 0] == n]) for n in range(1, 9)) > 0.5
 
 
 @pytest.mark.parametrize(

@@ -24,17 +24,16 @@ def make_cases(settings: StudySettings) -> list[Case]:
     latin-hypercube     McKay, Beckman, Conover 1979, as scipy.stats.qmc has it
     sobol               Saltelli et al. 2010 on a scrambled Sobol sequence, as SALib has it: blocks of D + 2
                         cases, from which first and total order indices follow
-    Those of a grid or list on each of the lines, case n of others on line n, a whole block of sobol on one, beginning
-    anew after the last line; and each for all that are compared.
+    Those of a grid or list on each of the lines; a case of others, or a whole block of sobol, on one that is drawn, all
+    lines as often (in turn, they would go with the first parameters of a Sobol sequence); and each for all compared.
     Raises ZSpringError if there are more than MOST_CASES.
     """
     compared = [{COMPARED: i + 1} for i in range(len(settings.compared))] or [{}]
     lines = [{LINE_NUMBER: i + 1} for i in range(settings.lines)] or [{}]
     if settings.design in SAMPLED:
         block = len(settings.vary) + 2 if settings.design == "sobol" else 1
-        cases = [
-            {**case, **lines[n // block % len(lines)]} for n, case in enumerate(_designed(settings, len(compared)))
-        ]
+        drawn = np.random.default_rng([settings.seed, 1]).permutation(settings.samples) % len(lines)
+        cases = [{**case, **lines[drawn[n // block]]} for n, case in enumerate(_designed(settings, len(compared)))]
     else:
         each = _designed(settings, len(lines) * len(compared))
         cases = [{**case, **line} for case in each for line in lines]
