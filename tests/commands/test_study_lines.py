@@ -343,6 +343,21 @@ def test_along_one_line_cases_are_one_sample(fmus, tmp_path):
     rows = rows_of(settings, lambda case: case["couple.start"] * case["compare"])
     found = differences(settings, quantity, make_cases(settings), rows)
     assert [(d.condition, d.lines, d.mean) for d in found] == [((200,), 3, -40), ((300,), 3, -40)]
+    told = difference_table(settings, found)
+    assert all(np.isnan(d.half_width) and not d.is_clear for d in found) and "\u00b1" not in "".join(told)
+    assert told[0].endswith("without intervals, as cases are chosen and not drawn by chance") and len(told) == 4
+
+
+def test_cases_drawn_by_chance_along_one_line_have_intervals(fmus, tmp_path):
+    text = 'design = "latin-hypercube"\nsamples = 6\n[vary]\nm1 = { from = 7, to = 8 }\n[couple]\n'
+    settings = study_of(text + 'figures = ["standard_deviation"]\n[compare]\na = {}\nb = {}\n', fmus, tmp_path)
+    (quantity,) = settings.quantities
+    assert isinstance(quantity, CoupledQuantity)
+    rows = rows_of(settings, lambda case: float(case["m1"]) * case["compare"])
+    (found,) = differences(settings, quantity, make_cases(settings), rows)
+    m1 = np.array([float(case["m1"]) for case in make_cases(settings)[::2]])
+    interval = ttest_rel(m1, 2 * m1).confidence_interval(0.95)
+    assert found.half_width == pytest.approx((interval.high - interval.low) / 2)
 
 
 def test_rank_correlations_are_spearmans_and_their_intervals_hold_as_often_as_they_say(fmus, tmp_path):

@@ -19,6 +19,7 @@ from .files import Rows, column_of
 from .settings import COMPARED, StudySettings
 
 SHARE = 0.95  # of the intervals
+NO_INTERVALS = "without intervals, as cases are chosen and not drawn by chance"
 COUNT = f"{COUPLE}pantographs"
 SPEED = f"{COUPLE}speed"
 Condition = tuple[Value, ...]  # values of `conditions`
@@ -42,7 +43,7 @@ class Difference:
     condition   values of `conditions`
     name        of the other one
     first       mean of the first one
-    half_width  of the interval of the mean difference, by Student's t; NaN of one line
+    half_width  of the interval of the mean difference, by Student's t; NaN of one line, and of cases that are not drawn
     lines       or cases, where lines are not irregular
     """
 
@@ -96,8 +97,15 @@ def differences(
                         by_condition.setdefault(condition, {}).setdefault(line, []).append(pair)
                 for condition, by_line in by_condition.items():
                     means = np.array([np.mean(pairs, axis=0) for pairs in by_line.values()])
-                    found.append(Difference(condition, runner, figure, name, *_interval(means)))
+                    mean, difference, half_width, count = _interval(means)
+                    half_width = half_width if has_intervals(settings) else float("nan")
+                    found.append(Difference(condition, runner, figure, name, mean, difference, half_width, count))
     return found
+
+
+def has_intervals(settings: StudySettings) -> bool:
+    """Whether what is averaged is drawn independently, as lines are; cases of a grid, list or Sobol block are not."""
+    return settings.lines > 0 or settings.design == "latin-hypercube"
 
 
 def _value(rows: Rows, number: int, column: str) -> float:
@@ -146,7 +154,8 @@ def difference_table(settings: StudySettings, found: Sequence[Difference]) -> li
     label, unit, _ = described(figure)
     told = conditions(settings)
     columns = list(dict.fromkeys(_without_count(told, each.condition) for each in shown))
-    lines = [f"{label}, {unit or 1}: what {first} has more than the others, ± half of the {100 * SHARE:g} % interval"]
+    by = f"± half of the {100 * SHARE:g} % interval" if has_intervals(settings) else NO_INTERVALS
+    lines = [f"{label}, {unit or 1}: what {first} has more than the others, {by}"]
     table = [["", *(", ".join(condition_texts(settings, told, condition)) or "all cases" for condition in columns)]]
     last = None
     for runner, name in dict.fromkeys((each.runner, each.name) for each in shown):

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from ..figures import new_figure
 from ..line.quantities import described
 from ..variables import Value
-from .compare import COUNT, SPEED, Difference, Runner, condition_texts, conditions, runners
+from .compare import COUNT, NO_INTERVALS, SPEED, Difference, Runner, condition_texts, conditions, has_intervals, runners
 from .coupled import CoupledQuantity
 from .design import Case
 from .files import Rows, values
@@ -103,9 +103,8 @@ def difference_figure(
             axes.errorbar(at + beside, mean, half, fmt="o", ms=3, capsize=2.5, color=f"C{k}", label=f"less {label}")
         axes.axhline(0, color="black", linewidth=0.8)
         places.mark(axes)
-    _finish(
-        figure, panels, f"{title}\n{first} less the others on the same lines, 95 % intervals of the mean", places.label
-    )
+    by = "95 % intervals of the mean" if has_intervals(settings) else NO_INTERVALS
+    _finish(figure, panels, f"{title}\n{first} less the others on the same lines, {by}", places.label)
     return figure
 
 
