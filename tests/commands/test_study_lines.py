@@ -378,6 +378,29 @@ def test_rank_correlations_are_spearmans_and_their_intervals_hold_as_often_as_th
     assert correlation_doubts([replace(found, value=np.array([0.6, 0.9]), low=found.low, high=found.high)]) == []
 
 
+def test_an_item_of_a_list_counts_once_however_many_its_lines(fmus, tmp_path):
+    """8 items, each with a figure of its own that does not go with m1, on 30 lines: intervals hold 0 as they say."""
+    numbers = [round(7 + n / 10, 1) for n in range(8)]
+    text = f'design = "list"\n[vary]\nm1 = {numbers}\n[couple]\nline = "{LINE.as_posix()}"\n'
+    settings = study_of(f"{text}[irregularity]\nlines = 30\n[compare]\na = {{}}\nb = {{}}\n", fmus, tmp_path)
+    cases, name = make_cases(settings), column_of(settings.variables["m1"])
+    draws, inside = np.random.default_rng(4), 0
+    for _ in range(150):
+        of_item, of_line = dict(zip(numbers, draws.normal(size=8))), draws.normal(size=31)
+        y = {n: of_item[case["m1"]] + of_line[case["irregularity.line"]] for n, case in enumerate(cases)}
+        rows = {n: {name: str(cases[n]["m1"]), "y": str(y[n])} for n in y if cases[n]["compare"] == 2}
+        (found,) = correlations(settings, ["m1"], ["y"], rows)
+        inside += found.low[0] <= 0 <= found.high[0]
+        assert found.samples == 8
+        assert found.value[0] == pytest.approx(spearmanr(numbers, list(of_item.values())).statistic, abs=1e-12)
+    assert inside / 150 > 0.9
+    rows[1]["y"] = ""  # the first item lacks a line, and the last one a row
+    del rows[len(cases) - 1]
+    (found,) = correlations(settings, ["m1"], ["y"], rows)
+    assert found.samples == 6
+    assert found.value[0] == pytest.approx(spearmanr(numbers[1:-1], list(of_item.values())[1:-1]).statistic)
+
+
 def test_a_study_of_irregular_lines_writes_its_tables_and_figures(tmp_path):
     text = (
         GRID + 'spans = [3, 3]\nfigures = ["standard_deviation"]\n[vary]\ncouple.speed = [280, 300]\n[irregularity]\n'

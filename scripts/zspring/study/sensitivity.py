@@ -22,10 +22,12 @@ QUANTILE = 1.959964  # of the normal distribution, of a 95 % interval
 class Correlation:
     """Spearman's rank correlation of one figure with each parameter, and the ends of its 95 % interval.
 
+    samples             that have the figure
     value, low, high    (parameters,)
     """
 
     column: str
+    samples: int
     value: np.ndarray
     low: np.ndarray
     high: np.ndarray
@@ -42,14 +44,25 @@ def correlations(
 ) -> list[Correlation]:
     """Of each column that varies, over the cases that have it.
 
+    An item of a list is one sample, with the mean of the figure over its lines; one that lacks a line does not count.
     Intervals by Fisher's transform with the variance of Bonett, Wright, Psychometrika 65 (2000).
     """
     from scipy.stats import rankdata  # slow to load
 
     found = []
-    given = np.array([values(rows, column_of(settings.variables[name])) for name in parameters])
+    alike = settings.lines if settings.design == "list" and settings.lines else 1
+    copies = alike * max(1, len(settings.compared))
+    items: dict[int, dict[int, Mapping[str, str]]] = {}
+    for number, row in sorted(rows.items()):
+        items.setdefault(number // copies, {})[number] = row
+    whole_items = [own for own in items.values() if len(own) == alike]
+
+    def of_items(column: str) -> np.ndarray:
+        return np.array([values(own, column).mean() for own in whole_items])
+
+    given = np.array([of_items(column_of(settings.variables[name])) for name in parameters])
     for column in columns:
-        figure = values(rows, column)
+        figure = of_items(column)
         whole = np.isfinite(figure)
         if whole.sum() < LEAST or np.ptp(figure[whole]) == 0:
             continue
@@ -58,7 +71,7 @@ def correlations(
         half = QUANTILE * np.sqrt((1 + value**2 / 2) / (whole.sum() - 3))
         at = np.arctanh(np.clip(value, -1 + 1e-12, 1 - 1e-12))
         low, high = np.tanh(at - half), np.tanh(at + half)
-        found.append(Correlation(column, value, np.minimum(low, value), np.maximum(high, value)))
+        found.append(Correlation(column, int(whole.sum()), value, np.minimum(low, value), np.maximum(high, value)))
     return found
 
 
@@ -84,12 +97,12 @@ def write_correlations(
 ) -> None:
     """One row for each of the compared, figure and parameter."""
     rows = [
-        [name, each.column, parameter, *triple]
+        [name, each.column, parameter, *triple, each.samples]
         for name, correlations in found.items()
         for each in correlations
         for parameter, triple in zip(parameters, _each(each))
     ]
-    columns = ["compare", "result", "parameter", "rank correlation", "low", "high"]
+    columns = ["compare", "result", "parameter", "rank correlation", "low", "high", "samples"]
     write_table(path, {**head, "low, high": "ends of the 95 % interval"}, columns, rows, digits=6)
 
 
