@@ -345,7 +345,7 @@ def test_along_one_line_cases_are_one_sample(fmus, tmp_path):
     assert [(d.condition, d.lines, d.mean) for d in found] == [((200,), 3, -40), ((300,), 3, -40)]
     told = difference_table(settings, found)
     assert all(np.isnan(d.half_width) and not d.is_clear for d in found) and "\u00b1" not in "".join(told)
-    assert told[0].endswith("without intervals, as cases are chosen and not drawn by chance") and len(told) == 4
+    assert told[0].endswith("no intervals: cases are not drawn by chance") and len(told) == 4
 
 
 def test_cases_drawn_by_chance_along_one_line_have_intervals(fmus, tmp_path):

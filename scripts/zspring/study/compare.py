@@ -19,7 +19,7 @@ from .files import Rows, column_of
 from .settings import COMPARED, StudySettings
 
 SHARE = 0.95  # of the intervals
-NO_INTERVALS = "without intervals, as cases are chosen and not drawn by chance"
+NO_INTERVALS = "no intervals: cases are not drawn by chance"
 COUNT = f"{COUPLE}pantographs"
 SPEED = f"{COUPLE}speed"
 Condition = tuple[Value, ...]  # values of `conditions`

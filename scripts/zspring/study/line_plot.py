@@ -103,8 +103,8 @@ def difference_figure(
             axes.errorbar(at + beside, mean, half, fmt="o", ms=3, capsize=2.5, color=f"C{k}", label=f"less {label}")
         axes.axhline(0, color="black", linewidth=0.8)
         places.mark(axes)
-    by = "95 % intervals of the mean" if has_intervals(settings) else NO_INTERVALS
-    _finish(figure, panels, f"{title}\n{first} less the others on the same lines, {by}", places.label)
+    by = "on the same lines, 95 % intervals of the mean" if has_intervals(settings) else f"({NO_INTERVALS})"
+    _finish(figure, panels, f"{title}\n{first} less the others {by}", places.label)
     return figure
 
 
