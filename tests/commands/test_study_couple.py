@@ -180,7 +180,19 @@ def test_what_a_result_must_not_be_read_without_is_told(fmus, tmp_path):
         ),
         (
             '[vary]\nm1 = [7]\n[set]\nstatic_force = 80\n[couple]\nstatic_law = "AC"',
-            r"static_force and \[couple\] static_law",
+            "static_force and static_law: give one",
+        ),
+        (
+            '[vary]\nm1 = [7]\n[set]\ncouple.static_law = "AC"\nstatic_force = 80\n[couple]',
+            "static_force and static_law: give one",
+        ),
+        (
+            '[vary]\nstatic_force = [70]\n[couple]\n[compare]\na = { couple.static_law = "AC" }',
+            "a: static_force and static_law: give one",
+        ),
+        (
+            '[vary]\nm1 = [7]\n[set]\nstatic_force = 80\n[couple]\n[compare]\na = { couple.static_law = "AC" }',
+            "a: static_force and static_law: give one",
         ),
         ("[vary]\nm1 = [7]\n[static]\namplitudes = [0.01]\n[compare]\na = {}", r"\[compare\]: needs \[couple\]"),
     ],

@@ -25,7 +25,8 @@ from zspring.settings import tomllib
 from zspring.study.compare import Runner, difference_table, differences
 from zspring.study.coupled import CoupledQuantity
 from zspring.study.design import make_cases
-from zspring.study.files import column_of
+from zspring.study.files import StudyRecord, column_of
+from zspring.study.head import first_start, study_head
 from zspring.study.irregular import Irregularity, Roughness
 from zspring.study.sensitivity import correlation_doubts, correlations
 from zspring.study.settings import StudySettings, read_study
@@ -263,6 +264,13 @@ def test_lines_are_drawn_evenly_and_do_not_go_with_the_parameters(fmus, tmp_path
         ('lines = 3\nprofile = "bad.csv"', "bad.csv, line 3: position: must be above that of the row before"),
         ('lines = 3\nspectrum = "negative.csv"', "negative.csv: wavenumber and spectrum: must be at least 0"),
         ("lines = 3\nsag = 1", "unknown key 'sag'"),
+        ("lines = 3\n[set]\nirregularity.contact_wire = 0.001", r"\[irregularity\] contact_wire: needs wavelengths"),
+        ("lines = 3\n[set]\nirregularity.slack = 0.1", r"\[irregularity\] slack and slack_by: one alone"),
+        ("lines = 3\n[compare]\na = {}\nb = { irregularity.contact_wire = 0.001 }", "b: contact_wire: needs wavele"),
+        ("lines = 3\n[compare]\na = {}\nb = { irregularity.slack_by = 0.1 }", "b: slack and slack_by: one alone does"),
+        ("lines = 3\n[vary]\nirregularity.line = [2]", "no parameter 'irregularity.line'"),
+        ("lines = 3\n[set]\nirregularity.line = 2", "no parameter 'irregularity.line'"),
+        ("lines = 3\n[compare]\na = { irregularity.line = 2 }", "no parameter 'irregularity.line'"),
     ],
 )
 def test_an_irregularity_that_cannot_be_meant_is_refused_in_one_line(fmus, tmp_path, text, told):
@@ -271,6 +279,78 @@ def test_an_irregularity_that_cannot_be_meant_is_refused_in_one_line(fmus, tmp_p
     with pytest.raises(ZSpringError, match=told) as refusal:
         study_of(f"{GRID}[irregularity]\n{text}\n", fmus, tmp_path)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        ("[vary]\nirregularity.slack = [0.1]", r"\[vary\] irregularity.slack: needs \[irregularity\]"),
+        ("[vary]\nm1 = [7]\n[set]\nirregularity.missing = 0.1", r"\[set\] irregularity.missing: needs \[irreg"),
+        ("[compare]\na = { irregularity.missing = 0.1 }", r"\[compare\] a: irregularity.missing: needs \[irregularity"),
+    ],
+)
+def test_an_irregularity_of_no_lines_is_refused(fmus, tmp_path, text, told):
+    with pytest.raises(ZSpringError, match=told):
+        study_of(f"{GRID}{text}\n", fmus, tmp_path)
+
+
+def test_each_of_the_compared_may_complete_an_irregularity(fmus, tmp_path):
+    text = "[irregularity]\nlines = 1\nslack = 0.1\nwavelengths = [1, 50]\nexponent = 2\n[compare]\n"
+    text += "".join(
+        f"{n} = {{ irregularity = {{ slack_by = {x}, contact_wire = {x} }} }}\n" for n, x in (("a", 0.01), ("b", 0.02))
+    )
+    settings = study_of(GRID + text, fmus, tmp_path)
+    given = [settings.parameters_of(case) for case in make_cases(settings)]
+    assert [(each["irregularity.slack_by"], each["irregularity.contact_wire"]) for each in given] == [
+        (0.01,) * 2,
+        (0.02,) * 2,
+    ]
+
+
+def head_of(settings: StudySettings, fmus: Pair) -> dict[str, str]:
+    cases = make_cases(settings)
+    return study_head(settings, first_start(settings, cases, *fmus), *fmus, len(cases))
+
+
+def test_compared_that_changed_places_are_another_study(fmus, tmp_path):
+    """A difference would have the other sign."""
+    text, entries = f"{GRID}[irregularity]\nlines = 2\n[compare]\n", ["a = { k2 = 8000 }\n", "b = { k2 = 9000 }\n"]
+    there, swapped = (
+        head_of(study_of(text + "".join(each), fmus, tmp_path), fmus) for each in (entries, entries[::-1])
+    )
+    rows, other = (
+        [{"irregularity.line": line, "compare": name} for line in "12" for name in names] for names in ("ab", "ba")
+    )
+    path = tmp_path / "study.csv"
+    with StudyRecord(path, there, rows, ["y"]) as record:
+        record.append(record.row(1, {"status": "ok", "y": 1.0}))
+    assert StudyRecord(path, there, rows, ["y"]).missing == [0, 2, 3]
+    with pytest.raises(ZSpringError, match=r"of other settings \(compare 1: a: k2=8000, now b: k2=9000\)"):
+        StudyRecord(path, swapped, other, ["y"])
+    with pytest.raises(ZSpringError, match="is not as it was written"):
+        StudyRecord(path, there, other, ["y"])
+
+
+@pytest.mark.parametrize("names", ["a", "ab"])
+def test_the_head_tells_what_the_cases_have(fmus, tmp_path, names):
+    """Of what [compare] gives, alike for all, in place of the tables' own."""
+    text = f"{GRID}speed = 250\n[irregularity]\nlines = 2\ndropper_length = 0.005\n[compare]\n"
+    own = "couple.speed = 200, couple.spacing = 60, irregularity.dropper_length = 0.01, irregularity.missing = 0.02"
+    settings = study_of(text + "".join(f"{name} = {{ {own} }}\n" for name in names), fmus, tmp_path)
+    told = head_of(settings, fmus)
+    for case in make_cases(settings):
+        given = settings.parameters_of(case)
+        for name in ("couple.speed", "couple.spacing", "irregularity.dropper_length", "irregularity.missing"):
+            assert float(told[name.replace(".", " ")]) == given[name]
+    assert (told["couple speed"], told["irregularity dropper_length"]) == ("200", "0.01")
+
+
+def test_the_head_has_no_static_force_that_no_case_has(fmus, tmp_path):
+    by_law = study_of(f'{GRID}static_law = "AC"\n[vary]\nm1 = [7]\n', fmus, tmp_path)
+    bench = study_of(f'{GRID}static_law = "AC"\n[vary]\nm1 = [7]\n[static]\namplitudes = [0.01]\n', fmus, tmp_path)
+    own = study_of(f"{GRID}[vary]\nm1 = [7]\n[set]\nstatic_force = 80\n", fmus, tmp_path)
+    assert head_of(bench, fmus)["static_force"].endswith(" N")  # the bench knows no such law
+    assert "static_force" not in head_of(by_law, fmus) and head_of(own, fmus)["static_force"] == "80 N"
 
 
 def test_irregular_lines_need_a_line_file(fmus, tmp_path):

@@ -71,7 +71,7 @@ def factors(pantograph: Variables, catenary: Variables | None) -> Variables:
     run += [choice_variable(COUPLE + name, items) for name, items in CHOICES.items()]
     for name, (unit, most) in IRREGULARITIES.items():
         run.append(own_variable(IRREGULARITY + name, unit=unit, min="0", max=most))
-    return Variables([*pantograph, *line, *run, own_variable(LINE_NUMBER, "Integer", min="1")])
+    return Variables([*pantograph, *line, *run])
 
 
 def is_set_by_the_run(name: str) -> bool:

@@ -14,6 +14,7 @@ from ..line.quantities import FIGURES, FREE, is_figure
 from ..options import Numbers
 from ..parameter_sets import LINES, PANTOGRAPHS
 from ..settings import ALL_FREQUENCIES, Band, BesidePath, Positive, Table, by_full_name, fitting, set_name
+from .coupled import IRREGULARITY
 from .evaluations import FrfQuantity, StaticQuantity
 from .factors import IRREGULARITIES, run_keys
 
@@ -195,6 +196,11 @@ class StudyFile(Table):
         for table in ("compare", "irregularity"):
             if getattr(self, table) and not self.couple:
                 raise ValueError(f"[{table}]: needs [couple]")
+        given = {"[vary]": self.vary, "[set]": self.common, **{f"[compare] {n}:": x for n, x in self.compare.items()}}
+        for where, names in given.items():
+            for name in names:
+                if name.startswith(IRREGULARITY) and not self.irregularity:
+                    raise ValueError(f"{where} {name}: needs [irregularity]")
         if self.compare and self.design == "sobol":
             raise ValueError("[compare]: needs another design than sobol")
         for name in self.vary:

@@ -69,6 +69,8 @@ class StudyRecord(Record[Row]):
     def _checked(self, row: Mapping[str, str]) -> Row:
         if list(row) != self.columns or None in row.values() or int(row[NUMBER]) >= len(self._parameters):
             raise ValueError
+        if not self._parameters[int(row[NUMBER])].items() <= row.items():  # of another case
+            raise ValueError
         return dict(row)
 
 

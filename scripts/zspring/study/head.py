@@ -65,9 +65,12 @@ def study_head(settings: StudySettings, start: Start, fmu: Fmu, catenary: Fmu, c
     own |= {"cases": str(cases), **settings.described()}
     own |= {
         name.replace(".", " ", 1): text(settings.variables[name], value)
-        for name, value in settings.common.items()
+        for name, value in settings.sets[0].items()
         if name.startswith((COUPLE, IRREGULARITY)) and settings.is_common(name)
     }
     line = {name: value for name, value in start.line.items() if settings.is_common(name.replace("catenary ", LINE, 1))}
     common = {name: value for name, value in start.parameters.items() if settings.is_common(name)}
-    return {**file_head(fmu, common, own, but_not=("drive",)), **line}
+    law = f"{COUPLE}static_law"  # sets the static force of a run along a line, whatever the parameters have
+    is_set = law in settings.vary or all(law in parameters for parameters in settings.sets)
+    is_told_by_law = is_set and all(isinstance(each, CoupledQuantity) for each in settings.quantities)
+    return {**file_head(fmu, common, own, but_not=("drive", *(["static_force"] if is_told_by_law else []))), **line}

@@ -20,12 +20,23 @@ from ..settings import named, settings_of
 from ..variables import Value, Variables, text
 from .coupled import COUPLE, IRREGULARITY, LINE, CoupledQuantity
 from .evaluations import Quantity
-from .factors import IRREGULARITIES, LINE_NUMBER, SET_BY_THE_RUN, choice_variable, factors, run_keys, value_of
+from .factors import (
+    IRREGULARITIES,
+    LINE_NUMBER,
+    SET_BY_THE_RUN,
+    choice_variable,
+    factors,
+    own_variable,
+    run_keys,
+    value_of,
+)
 from .file import SAMPLED, Range, StudyFile
 from .irregular import Irregularity
 from .roughness import roughness_of
 
 _SLACK = {f"{IRREGULARITY}slack", f"{IRREGULARITY}slack_by"}
+_HEIGHT = f"{IRREGULARITY}contact_wire"
+_FORCE = {f"{COUPLE}static_law", "static_force"}  # the law sets the force, whatever it was
 COMPARED = "compare"  # name of what tells which of the compared a case is
 Parameters = dict[str, Value]
 
@@ -50,11 +61,15 @@ class StudySettings:
         """Of what differs between cases."""
         return [*self.vary, *([LINE_NUMBER] if self.lines else []), *([COMPARED] if self.compared else [])]
 
+    @property
+    def sets(self) -> list[Parameters]:
+        """What cases are given but for what varies: by each of the compared, or by all."""
+        return list(self.compared.values()) or [dict(self.common)]
+
     def parameters_of(self, case: Mapping[str, Value]) -> Parameters:
         """All that a case is given."""
         own = dict(case)
-        common = list(self.compared.values())[int(own.pop(COMPARED)) - 1] if self.compared else self.common
-        return {**common, **own}
+        return {**self.sets[int(own.pop(COMPARED, 1)) - 1], **own}
 
     def described(self) -> dict[str, str]:
         """Everything above but the common parameters as text, by key."""
@@ -67,11 +82,10 @@ class StudySettings:
                 if isinstance(values, Range)
                 else " ".join(text(self.variables[name], value) for value in values)
             )
-        for name, parameters in self.compared.items():
+        for i, (name, parameters) in enumerate(self.compared.items(), 1):  # their order tells the sign of differences
             own = {key: value for key, value in parameters.items() if self._differs(key)}
-            head[f"compare {name}"] = " ".join(
-                f"{key}={text(self.variables[key], value)}" for key, value in own.items()
-            )
+            texts = (f"{key}={text(self.variables[key], value)}" for key, value in own.items())
+            head[f"compare {i}"] = " ".join([f"{name}:", *texts])
         if self.lines:
             head["irregular lines"] = str(self.lines)
         for quantity in self.quantities:
@@ -104,14 +118,14 @@ def read_study(path: Path, fmu: Fmu, catenary: Fmu | None = None) -> StudySettin
             if file.draws:
                 given = _by_parameter(read_draws(file.draws, fmu, (*BENCH_PARAMETERS, *common)))
             vary = {name: _varied(variables, name, value, file.design) for name, value in given.items()}
-        line, irregularity = None, None
+        line, irregularity, told = None, None, {*common, *vary}
         if file.couple and catenary:
             line, of_line = _line(file.couple.line, catenary, vary)
             if len(points_of(file.couple.figures)) > (most := most_points(catenary)):
                 raise ZSpringError(f"[couple] figures: uplift_at is told of {most} points at most")
             of_run = _tabled("couple", file.couple, run_keys(), variables, vary)
-            if f"{COUPLE}static_law" in {*of_run, *vary} and "static_force" in {*common, *vary}:
-                raise ZSpringError("static_force and [couple] static_law: give one of them")
+            told |= of_run.keys()
+            _check_force(told)
             common = {**of_line, **of_run, **common}
             if file.irregularity:
                 irregularity, of_it = _irregularity(file.irregularity, line, variables, vary)
@@ -120,6 +134,7 @@ def read_study(path: Path, fmu: Fmu, catenary: Fmu | None = None) -> StudySettin
         compared = {}
         for name, assigned in file.compare.items():
             with named(f"[compare] {name}: "):
+                _check_force(told | assigned.keys())
                 compared[name] = sets.with_own(variables, assigned, file.parameter_set)
         lengths = {name: len(values) for name, values in vary.items() if not isinstance(values, Range)}
         if file.design == "list" and len(set(lengths.values())) > 1:
@@ -127,6 +142,11 @@ def read_study(path: Path, fmu: Fmu, catenary: Fmu | None = None) -> StudySettin
             raise ZSpringError(f"[vary]: design list needs as many values of each parameter: {found}")
         quantities: tuple[Quantity, ...] = tuple(table.quantity for table in (file.frf, file.static) if table)
         whole = sets.whole(file.parameter_set)
+        if irregularity:
+            for name, each in (compared or {"": whole}).items():
+                with named(f"[irregularity] with [compare] {name}: " if name else "[irregularity] "):
+                    _check_irregularity(irregularity, {*each, *vary})
+            variables = Variables([*variables, own_variable(LINE_NUMBER, "Integer", min="1")])
         if file.couple:
             most = _most(f"{COUPLE}pantographs", vary, [whole, *compared.values()])
             quantities += (CoupledQuantity(file.couple.figures, most, file.couple.spans, line, irregularity),)
@@ -165,8 +185,6 @@ class _Sets:
         for name in given:
             if name in self.but_not:
                 raise ZSpringError(f"{name}: must be in [vary] or in [compare], not in both")
-        if "static_force" in given and f"{COUPLE}static_law" in {*self.common, *self.but_not, *given}:
-            raise ZSpringError("static_force and static_law: give one of them")
         return {**self.whole(own), **{name: value_of(variables, name, value) for name, value in given.items()}}
 
 
@@ -196,21 +214,30 @@ def _irregularity(
     """The distribution of lines, and what the table gives of what can vary."""
     values = _tabled("irregularity", given, list(IRREGULARITIES), variables, vary)
     rough, deviation = roughness_of(given)
-    height, told = f"{IRREGULARITY}contact_wire", {*values, *vary}
     with named("[irregularity] "):
         if line is None:
             raise ZSpringError("needs a line file: [couple] line = ..., with the suffix .toml")
-        if height in told and rough is None:
-            raise ZSpringError("contact_wire: needs wavelengths and exponent, a spectrum or a profile")
-        if rough and height not in told:
-            if deviation is None:
-                raise ZSpringError("contact_wire is missing: the standard deviation in m")
-            values[height] = deviation
         if rough and len(line.profile):
             raise ZSpringError("contact_wire: the line file has an irregularity of its own")
-        if _SLACK & told not in (set(), _SLACK):
-            raise ZSpringError("slack and slack_by: one alone does nothing")
+        if deviation is not None and _HEIGHT not in {*values, *vary}:
+            values[_HEIGHT] = deviation
         return Irregularity(line, given.seed, rough), values
+
+
+def _check_irregularity(irregularity: Irregularity, told: set[str]) -> None:
+    """Refuses what a case is told that does nothing, or nothing alone."""
+    if _HEIGHT in told and irregularity.roughness is None:
+        raise ZSpringError("contact_wire: needs wavelengths and exponent, a spectrum or a profile")
+    if irregularity.roughness and _HEIGHT not in told:
+        raise ZSpringError("contact_wire is missing: the standard deviation in m")
+    if _SLACK & told not in (set(), _SLACK):
+        raise ZSpringError("slack and slack_by: one alone does nothing")
+
+
+def _check_force(told: set[str]) -> None:
+    """Refuses a static force that the law would overwrite."""
+    if _FORCE <= told:
+        raise ZSpringError("static_force and static_law: give one of them")
 
 
 def _most(name: str, vary: Mapping[str, Range | tuple[Value, ...]], sets: Sequence[Parameters]) -> int:
