@@ -24,6 +24,7 @@ sys.path.insert(0, str(ROOT / "fmu_src"))
 import generate_variables
 
 MODULES = BUILD / "webassembly"
+STAMP = MODULES / "sources.sha256"
 SOURCES = [*DESCRIPTIONS, "fmu_src", "scripts/tooling/webassembly.py"]
 SITE = Path(sysconfig.get_paths()["purelib"])
 EIGEN = SITE / "cmeel.prefix" / "include" / "eigen3"
@@ -95,23 +96,39 @@ def runtime(folder: Path) -> list[tuple[Path, list[str]]]:
     ]
 
 
-def build(runner: Runner) -> dict[str, Path]:
-    """The modules by their models' identifiers, built where the sources have changed. Raises SetupError."""
-    names: dict[str, tuple[str, Path]] = {}  # by identifier: folder in fmu_src, description
+def models() -> dict[str, tuple[str, Path]]:
+    """Folder in fmu_src and description of each model, by its identifier."""
+    found = {}
     for file in DESCRIPTIONS:
         identifier = next(ET.parse(ROOT / file).iter("CoSimulation")).attrib["modelIdentifier"]
-        names[identifier] = "catenary" if "catenary" in file else "pantograph", ROOT / file
-    modules = {identifier: MODULES / f"{identifier}.wasm" for identifier in names}
-    stamp, wanted = MODULES / "sources.sha256", fingerprint(*SOURCES)
-    if stamp.exists() and stamp.read_text() == wanted and all(module.exists() for module in modules.values()):
+        found[identifier] = "catenary" if "catenary" in file else "pantograph", ROOT / file
+    return found
+
+
+def module_files() -> dict[str, Path]:
+    """Where the modules are, or will be, by their models' identifiers."""
+    return {identifier: MODULES / f"{identifier}.wasm" for identifier in models()}
+
+
+def are_built() -> bool:
+    """Whether they are there, of the sources as they are now."""
+    known = STAMP.read_text() if STAMP.exists() else ""
+    return known == fingerprint(*SOURCES) and all(module.exists() for module in module_files().values())
+
+
+def build(runner: Runner) -> dict[str, Path]:
+    """The modules by their models' identifiers, built where the sources have changed. Raises SetupError."""
+    modules = module_files()
+    if are_built():
         return modules
+    wanted = fingerprint(*SOURCES)
     MODULES.mkdir(parents=True, exist_ok=True)
-    stamp.unlink(missing_ok=True)
+    STAMP.unlink(missing_ok=True)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         common = Compiler(runner, MODULES)
         shared = [pool.submit(common, source, *options) for source, options in runtime(MODULES)]
         compiled = {}
-        for identifier, (model, description) in names.items():
+        for identifier, (model, description) in models().items():
             folder = MODULES / model
             generate_variables.main(description, folder)
             includes = [ROOT / "fmu_src", folder, ROOT / "fmu_src" / "fmi", ROOT / "fmu_src" / "fmi" / model]
@@ -122,5 +139,5 @@ def build(runner: Runner) -> dict[str, Path]:
             compiled[identifier] = compiler, [pool.submit(compiler, source, *options) for source in sources]
         for identifier, (compiler, objects) in compiled.items():
             compiler.link([made.result() for made in [*objects, *shared]], modules[identifier])
-    stamp.write_text(wanted)
+    STAMP.write_text(wanted)
     return modules

@@ -12,6 +12,7 @@ import click
 from .couple.command import couple
 from .en50318.command import en50318
 from .errors import ZSpringError
+from .explore.command import explore
 from .export import export
 from .frf.command import frf
 from .identify.command import identify
@@ -56,7 +57,7 @@ def research_command(name: str) -> click.Command:
 
 for command in (
     *(frf, simulate, recordings, identify, info, export),
-    *(static, slip, mechanism, linearize, study, line, couple, en50318),
+    *(static, slip, mechanism, linearize, study, line, couple, en50318, explore),
 ):
     commands.add_command(command)
 for name in RESEARCH:

@@ -11,6 +11,10 @@ const { Fmu, FmuError, StepDiscarded } = await load("fmi2");
 const { sweep } = await load("bench");
 const { LineRun } = await load("line");
 const { repeatsAfter, meanResponse } = await load("steady");
+const { lowPass, statistics } = await load("filter");
+const { checked, readMeasured, readSsv, writeSsv } = await load("files");
+const { staticLoop } = await load("static");
+const { raised } = await load("slip");
 
 const given = JSON.parse(readFileSync(0, "utf-8"));
 const open = async (model) => {
@@ -38,6 +42,48 @@ const jobs = {
     ),
 
   steady: () => given.sequences.map((H) => [...repeatsAfter(H, given.tolerance), meanResponse(H.slice(-3))]),
+
+  filter: () => ({
+    passed: lowPass(given.series, given.step, given.cutoff),
+    statistics: statistics(given.series, given.step, (i) => i >= given.inside[0] && i < given.inside[1]),
+  }),
+
+  /** Of each SSV text its values, or the refusal; of the first one what is written again. */
+  ssv() {
+    const description = readDescription(readFileSync(given.models.ZSpringPantograph[1], "utf-8"));
+    const values = given.texts.map((text) => {
+      try {
+        return readSsv(text, description);
+      } catch (error) {
+        return error.message;
+      }
+    });
+    return { values, written: writeSsv(values[0], description, "again") };
+  },
+
+  /** Of each CSV text its curves, or the refusal. */
+  measured: () =>
+    given.texts.map((text) => {
+      try {
+        return readMeasured(text);
+      } catch (error) {
+        return error.message;
+      }
+    }),
+
+  /** Refusals of values by name. */
+  values() {
+    const { variables } = readDescription(readFileSync(given.models.ZSpringPantograph[1], "utf-8"));
+    return given.values.map(([name, text]) => thrown(() => checked(variables.get(name), text))?.[1] ?? null);
+  },
+
+  async loop() {
+    return staticLoop((await open("ZSpringPantograph")).instantiate(), given.parameters, given.amplitude, given.rate);
+  },
+
+  async slip() {
+    return raised((await open("ZSpringPantograph")).instantiate(), {}, given.frequency, given.amplitudes);
+  },
 
   async figure() {
     const instance = (await open("ZSpringPantograph")).instantiate();

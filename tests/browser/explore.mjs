@@ -1,0 +1,109 @@
+// Uses the explorer's page as a person does, in a headless browser; prints as JSON what it showed.
+//
+//     node explore.mjs URL BROWSER PICTURE < {"ssv": TEXT, "csv": TEXT, "broken": TEXT}
+//
+// BROWSER: a Chromium of the system, as the packed one of the report's tests fails on controls of forms;
+// PICTURE: where the screenshot goes.
+
+import { readFileSync } from "node:fs";
+import { chromium } from "playwright-core";
+
+const [, , url, executablePath, picture] = process.argv;
+const given = JSON.parse(readFileSync(0, "utf-8"));
+const quiet = ["--disable-background-networking", "--disable-sync", "--no-first-run"];
+const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu", ...quiet] });
+const told = { errors: [], requests: [] };
+const REFINED = "every 0.125 Hz";
+
+try {
+  const page = await browser.newPage({ viewport: { width: 1300, height: 1000 } });
+  page.on("pageerror", (error) => told.errors.push(String(error)));
+  page.on("console", (message) => {
+    if (message.type() === "error" || message.type() === "warning") told.errors.push(message.text());
+  });
+  page.on("request", (request) => {
+    if (!/^(data|blob):/.test(request.url())) told.requests.push(request.url());
+  });
+  const text = (selector) => page.innerText(selector);
+  const rows = (selector) => page.$$eval(`${selector} tr`, (found) => found.map((row) => Array.from(row.cells, (cell) => cell.textContent)));
+  const until = (test, ...arguments_) => page.waitForFunction(test, arguments_, { timeout: 120_000 });
+  const state = (id, start) => until(([name, expected]) => document.getElementById(name).textContent.startsWith(expected), id, start);
+  const saved = async (button) => {
+    const [file] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
+    return readFileSync(await file.path(), "utf-8");
+  };
+  const drop = async (name, content) => {
+    const transfer = await page.evaluateHandle(([title, body]) => {
+      const made = new DataTransfer();
+      made.items.add(new File([body], title));
+      return made;
+    }, [name, content]);
+    await page.dispatchEvent("body", "drop", { dataTransfer: transfer });
+  };
+  const measured = async () => {
+    await page.waitForTimeout(600); // longer than the rest after which it measures anew
+    await state("frf-state", REFINED);
+  };
+
+  await page.goto(url);
+  await until(() => document.documentElement.dataset.ready === "true");
+  await state("frf-state", REFINED);
+  await until(() => document.getElementById("point-text").textContent.includes("Hz"));
+  told.point = await text("#point-text");
+  told.synthetic = await text("#synthetic");
+  await page.screenshot({ path: picture });
+  told.start = await saved("#frf-csv");
+
+  await page.focus('[id="slider-zspring.Mf"]'); // the keyboard moves it
+  for (let i = 0; i < 40; ++i) await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Tab");
+  await measured();
+  told.friction = await page.inputValue('[id="value-zspring.Mf"]');
+  told.moved = await saved("#frf-csv");
+  told.address = await page.evaluate(() => location.hash);
+  told.command = await page.inputValue("#command");
+
+  await drop("own.ssv", given.ssv);
+  await measured();
+  told.dropped = await page.inputValue('[id="value-m1"]');
+  told.written = await saved("#save");
+  await drop("measured.csv", given.csv);
+  await page.waitForTimeout(300);
+  told.afterCsv = await page.isVisible("#message");
+  await drop("broken.ssv", given.broken);
+  await page.waitForSelector("#message:not([hidden])");
+  told.refusal = await text("#message");
+  await page.fill('[id="value-m1"]', "-3");
+  await page.keyboard.press("Tab");
+  told.outOfBounds = await text("#message");
+
+  await page.click("#reset");
+  await page.click("#tab-line");
+  await page.selectOption("#line-set", "en-50318-2002");
+  await page.fill("#speed", "200");
+  await page.click("#run");
+  await until(() => document.querySelectorAll("#statistics td").length > 0);
+  told.statistics = await rows("#statistics");
+  told.frames = Number(await page.getAttribute("#place", "max")) + 1;
+  told.line = await saved("#line-csv");
+  await page.click("#sweep");
+  await state("line-state", "sweep: 33 of 33");
+  told.sweep = await saved("#sweep-csv");
+
+  await page.click("#tab-static");
+  await until(() => document.querySelectorAll("#stiffness td").length > 0);
+  told.stiffness = await rows("#stiffness");
+  await page.click("#tab-slip");
+  await state("slip-state", "27 of 27");
+  told.slip = await saved("#slip-csv");
+
+  await page.setViewportSize({ width: 390, height: 800 });
+  await page.click("#tab-frf");
+  told.tooWide = await page.evaluate(() => document.documentElement.scrollWidth > window.innerWidth);
+  told.unlabelled = await page.$$eval("input, select, textarea, button, canvas", (found) =>
+    found.filter((e) => !(e.labels?.length || e.getAttribute("aria-label") || e.textContent.trim())).map((e) => e.id || e.outerHTML),
+  );
+} finally {
+  await browser.close();
+}
+console.log(JSON.stringify(told));
