@@ -18,7 +18,7 @@ export class LineView {
     Object.assign(this, { context, results: [], version: 0, frame: 0, playing: false });
     at("line-set").append(...Object.keys(context.lines).map((name) => new Option(name)));
     this.force = new Plot(at("force-plot"), { x: "place along the line  [m]", y: "contact force, 0 to 20 Hz  [N]" });
-    this.sweepPlot = new Plot(at("sweep-plot"), { x: "speed  [km/h]", y: "standard deviation, 0 to 20 Hz  [N]" });
+    this.sweepPlot = new Plot(at("sweep-plot"), { x: "speed  [km/h]", y: "standard deviation, 0 to 20 Hz  [N]", legend: "left" });
     at("run").onclick = () => this.run();
     at("sweep").onclick = () => this.sweep();
     for (const id of ["line-set", "speed", "uplift", "first-span", "last-span"]) at(id).onchange = () => this.stale();

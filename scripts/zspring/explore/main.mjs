@@ -152,7 +152,8 @@ for (const button of document.querySelectorAll("[data-png]"))
     c.drawImage(source, 0, 0);
     c.fillStyle = "#444";
     c.font = `${Math.round(0.6 * note)}px sans-serif`;
-    const { FMU, GUID, synthetic, ...settings } = views[button.closest("section").id].made ?? head();
+    const view = views[button.closest("section").id], made = source.id === "sweep-plot" ? view.swept?.made : view.made;
+    const { FMU, GUID, synthetic, ...settings } = made ?? head();
     c.fillText(`${FMU} ${GUID}${synthetic ? ", Z-spring parameters synthetic" : ""}`, 8, source.height + note * 0.8);
     c.fillText(Object.entries(settings).map(([name, value]) => `${name}=${value}`).join(" "), 8, source.height + note * 1.6);
     download(`${button.dataset.png}.png`, copy.toDataURL("image/png"));

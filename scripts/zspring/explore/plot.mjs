@@ -21,7 +21,7 @@ export function ticks(low, high, count, log) {
 export const shown = (value) => String(Number(value.toPrecision(6)));
 
 export class Plot {
-  /** options: {x: label, y: label, logY, onPoint(x, y, index of the nearest curve)} */
+  /** options: {x: label, y: label, logY, legend: "left" or none, onPoint(nearest curve, index in it, whether clicked)} */
   constructor(canvas, options) {
     this.canvas = canvas;
     this.options = options;
@@ -130,7 +130,7 @@ export class Plot {
     const named = this.curves.filter((curve) => curve.label);
     if (!named.length) return;
     const wide = Math.max(...named.map((curve) => c.measureText(curve.label).width)) + 44;
-    const left = width - PAD.right - wide - 4;
+    const left = this.options.legend === "left" ? PAD.left + 4 : width - PAD.right - wide - 4;
     c.fillStyle = "#ffffffd8";
     c.fillRect(left, PAD.top + 4, wide, 16 * named.length + 4);
     c.textAlign = "left";

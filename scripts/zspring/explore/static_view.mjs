@@ -9,7 +9,7 @@ const at = (id) => document.getElementById(id);
 export class StaticView {
   constructor(context) {
     Object.assign(this, { context, loops: [], pinned: [], version: 0 });
-    this.plot = new Plot(at("static-plot"), { x: "compression, frame minus head  [mm]", y: "force beyond the static one  [N]" });
+    this.plot = new Plot(at("static-plot"), { x: "compression, frame minus head  [mm]", y: "force beyond the static one  [N]", legend: "left" });
     at("rate").onchange = () => this.update(false);
     at("static-csv").onclick = () => {
       const rows = this.loops.flatMap(({ amplitude, compression, force }) => compression.map((x, i) => [amplitude / 1e3, x, force[i]]));
