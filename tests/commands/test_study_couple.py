@@ -206,3 +206,12 @@ def test_a_study_that_cannot_be_meant_is_refused_in_one_line(fmus, tmp_path, tex
 def test_two_ways_to_an_uplift_are_refused(fmus, tmp_path):
     with pytest.raises(ZSpringError, match="mean_force and uplift: give one of them"):
         measured(f'{SHORT}[vary]\ncouple.uplift = [10]\n[couple]\nmean_force = "AC"\n', fmus, tmp_path)
+
+
+def test_uplift_at_mid_span_says_how_many_spans_were_watched(fmus, tmp_path):
+    """Seven points that are asked for leave one of the FMU's eight for the middles of two spans."""
+    points = ", ".join(f'"uplift_at_{x}"' for x in range(61, 68))
+    text = f'{SHORT}[vary]\ncouple.speed = [200]\n[couple]\nspans = [2, 3]\nfigures = ["midspan_uplift"%s]\n'
+    remark = "the largest uplift at mid-span is that of 1 of the 2 spans, which were watched"
+    (few,), (all_of_them,) = (measured(text % more, fmus, tmp_path) for more in (f", {points}", ""))
+    assert remark in few["remarks"] and "mid-span" not in all_of_them["remarks"]

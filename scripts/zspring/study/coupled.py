@@ -12,7 +12,7 @@ from ..errors import ZSpringError
 from ..fmu import Fmu
 from ..line.evaluated import of_start_up, sections, stop_behind
 from ..line.journey import MASSES, START_UPS, Journey, parameter_value
-from ..line.limits import near_wave_speed, of_bands, of_series, untold_supports
+from ..line.limits import near_wave_speed, of_bands, of_series, untold_middles, untold_supports
 from ..line.mean_force import STANDING, mean_force, run_aimed, static_uplifts
 from ..line.quantities import FIGURES, described, points_of
 from ..line.result import LineResult
@@ -35,6 +35,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "start_up": START_UPS,
     "coupling": SCHEMES,
 }
+MIDSPAN = "midspan_uplift"
 SPEED = 250.0  # km/h, as of `zspring couple`
 SPACING = 100.0  # m, likewise
 # Columns, with their units, of what a run was evaluated with.
@@ -129,6 +130,8 @@ class CoupledQuantity:
             found = statistics(series, section, further=further)
             values |= {self.column(figure, i): found[figure] for figure in self.figures}
             remarks += [*of_start_up(result, i, section, extent), *of_series(series, section)]
+            if section and MIDSPAN in self.figures:
+                remarks += untold_middles(series, section)
             where = (section.first, section.last) if section else ("", "")
             values |= {self._column(*each, i): value for each, value in zip(ALONG, (uplifts[i], *where))}
         return {**values, REMARKS: "; ".join(remark.removeprefix(_WARNING) for remark in remarks)}
