@@ -171,9 +171,8 @@ def _are_units(row: Sequence[str]) -> bool:
 
 
 def read_head(path: Path) -> dict[str, str]:
-    """The remarks `# NAME: VALUE` above a table, without reading that."""
-    with path.open(encoding="utf-8") as file:
-        return _head(file)
+    """The remarks `# NAME: VALUE` above a table. Raises ZSpringError for what is no text."""
+    return _head(_text(path).splitlines())
 
 
 def read_rows(path: Path) -> tuple[dict[str, str], list[dict[str, str]]]:
