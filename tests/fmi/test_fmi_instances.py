@@ -17,7 +17,7 @@ from fmpy.fmi2 import (
     fmi2ModelExchange,
 )
 
-from harness import Fmu, Instance, Message, callbacks_into, refusal
+from harness import Fmu, Instance, Message, callbacks_into, forms_of, refusal
 
 
 def instantiate(
@@ -59,14 +59,9 @@ def test_every_form_of_resource_location_is_accepted(any_fmu):
     for location in (
         None,
         "",
-        uri,
-        uri + "/",
-        uri.replace("file:///", "file:/"),
-        uri.replace("file:///", "file:////"),
-        uri.replace("file:///", "file://localhost/"),
-        uri.replace("%20", " "),
+        *forms_of(uri),
         str(resources),
-        resources.as_uri().replace("file:///", "file:///C:/"),
+        uri.replace("file:///", "file:///C:/"),
         "file:///no/such/folder%",
     ):
         log: list[Message] = []

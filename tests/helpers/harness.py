@@ -94,6 +94,12 @@ class Fmu:
         )
 
 
+def forms_of(uri: str) -> list[str]:
+    """The URI of a folder, file:///..., as hosts write it: slashes more or fewer, a host, capitals, blanks as they are."""
+    begins = "file:///", "file:/", "file:////", "file://localhost/", "FILE:///"
+    return [*(uri.replace("file:///", begin) for begin in begins), uri + "/", uri.replace("%20", " ")]
+
+
 def callbacks_into(log: list[Message], *, expand: bool = True) -> fmi2CallbackFunctions:
     """FMI callbacks that append to `log`; `expand`: expand printf directives first, as hosts do.
 
