@@ -95,7 +95,7 @@ class Fmu:
 
 
 def forms_of(uri: str) -> list[str]:
-    """The URI of a folder, file:///..., as hosts write it: slashes more or fewer, a host, capitals, blanks as they are."""
+    """The URI of a folder, file:///..., as hosts write it: other slashes, a host, capitals, blanks as they are."""
     begins = "file:///", "file:/", "file:////", "file://localhost/", "FILE:///"
     return [*(uri.replace("file:///", begin) for begin in begins), uri + "/", uri.replace("%20", " ")]
 
