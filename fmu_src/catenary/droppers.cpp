@@ -33,10 +33,16 @@ double DropperResponse::compliance(int i, int j) const {
   return i >= c.droppers.begin && i < c.droppers.end ? c.compliances[i - c.droppers.begin] : 0;
 }
 
-Range DropperResponse::add(int dropper, double factor, VectorXd& x) const {
-  const Column& c = columns_[dropper];
-  x.segment(4 * c.on.begin, c.values.size()) += factor * c.values;
-  return c.on;
+Range DropperResponse::add(double factor, const VectorXd& stiffness, const VectorXd& slack, const VectorXd& usual,
+                           VectorXd& x) const {
+  Range on{0, 0};
+  for (int j = 0; j < static_cast<int>(slack.size()); ++j)
+    if (const double more = slack[j] - usual[j]; more != 0) {
+      const Column& c = columns_[j];
+      x.segment(4 * c.on.begin, c.values.size()) += -factor * stiffness[j] * more * c.values;
+      on = on.with(c.on);
+    }
+  return on;
 }
 
 SparseMatrix dropper_stiffness(const Mesh& mesh, const VectorXd& stiffness) {

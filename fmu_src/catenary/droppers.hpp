@@ -32,8 +32,9 @@ class DropperResponse {
 
   // Adds to `forces`, N, of the droppers what a pull of the dropper j by `pull` N does to them, each of `stiffness`.
   void relieve(int j, double pull, const VectorXd& stiffness, VectorXd& forces) const;
-  double compliance(int i, int j) const;                     // scale b_i' A^-1 b_j, m/N
-  Range add(int dropper, double factor, VectorXd& x) const;  // x += factor A^-1 b; returns where
+  double compliance(int i, int j) const;  // scale b_i' A^-1 b_j, m/N
+  // What slack beyond `usual` of droppers of `stiffness` does to x, times `factor`; returns where.
+  Range add(double factor, const VectorXd& stiffness, const VectorXd& slack, const VectorXd& usual, VectorXd& x) const;
 
  private:
   struct Column {

@@ -69,16 +69,6 @@ void Hht::trial_forces(const VectorXd& u, const VectorXd& a, double beta_h2) {
     trial_[j] = shape.stiffness[j] * (stretch(line_.mesh, u, j) + beta_h2 * stretch(line_.mesh, a, j));
 }
 
-// What slack beyond `usual` does to x, in units of `factor` over the response's, and where.
-Range Hht::add_slack(const DropperResponse& response, double factor, const VectorXd& slack, const VectorXd& usual,
-                     VectorXd& x) const {
-  Range on{0, 0};
-  for (int j = 0; j < static_cast<int>(slack.size()); ++j)
-    if (const double more = slack[j] - usual[j]; more != 0)
-      on = on.with(response.add(j, -factor * line_.shape.stiffness[j] * more, x));
-  return on;
-}
-
 // u' K u of the droppers less twice their elastic energy, J. A dropper is stretched by e, slack by s, and by s0 in the
 // static state: it holds k e^2 / 2 - k s^2 / 2 + k s0^2 / 2 - k s0 e.
 double Hht::loose_energy(const LineState& s) const {
@@ -114,7 +104,7 @@ std::optional<LineState> Hht::at_rest(const Loads& loads) {
     const DropperResponse response(line_.mesh, factor, 1);
     trial_ += trial_tension(line_.shape, response) - line_.shape.tension;
     if (!slackening_.solve(trial_, response, s.slack)) return std::nullopt;
-    add_slack(response, 1, s.slack, line_.shape.slack, s.u);
+    response.add(1, line_.shape.stiffness, s.slack, line_.shape.slack, s.u);
   }
   if (!line_.p.solver.energies) return s;
   wires_.multiply(s.u, x_);
@@ -130,7 +120,7 @@ Variation Hht::at_rest_variation(const Loads& dloads, const VectorXd& slack) {
     const DropperResponse response(line_.mesh, factor, 1);
     trial_forces(v.d.u, v.d.a, 0);
     slackening_.solve_variation(trial_, response, slack, v.d.slack);
-    add_slack(response, 1, v.d.slack, no_slack_, v.d.u);
+    response.add(1, line_.shape.stiffness, v.d.slack, no_slack_, v.d.u);
   }
   return v;
 }
@@ -163,7 +153,7 @@ bool Hht::step(const StepFactors& f, const Loads& l1, const LineState& from, Lin
   to.slack = from.slack;
   const std::optional<int> solved = slackening_.solve(trial_, f.droppers, to.slack);
   if (!solved) return false;
-  add_slack(f.droppers, f.weight, to.slack, line_.shape.slack, to.a);
+  f.droppers.add(f.weight, line_.shape.stiffness, to.slack, line_.shape.slack, to.a);
   const bool slope_known = tells_slope(f.h, from.h);
   if (!slope_known) to.a_slope = from.a_slope;
   if (!sweeps::correct(operators(), f, all(),
@@ -222,7 +212,7 @@ void Hht::step_variation(const StepFactors& f, const Loads& dl1, const LineState
   if ((to.slack.array() > 0).any()) {
     trial_forces(d.u, d.a, f.beta_h2);
     slackening_.solve_variation(trial_, f.droppers, to.slack, d.slack);
-    on = on.with(add_slack(f.droppers, f.weight, d.slack, no_slack_, d.a));
+    on = on.with(f.droppers.add(f.weight, line_.shape.stiffness, d.slack, no_slack_, d.a));
   } else {
     d.slack.setZero();
   }

@@ -48,8 +48,6 @@ class Hht {
  private:
   BlockCholesky static_factor() const;
   LineState at_rest_if_taut(const BlockCholesky& factor, const Loads& loads) const;  // no dropper slack
-  Range add_slack(const DropperResponse& response, double factor, const VectorXd& slack, const VectorXd& usual,
-                  VectorXd& x) const;
   sweeps::Operators operators() const {
     return {wires_.rows(), mass_.rows(), line_.p.damping.stiffness, line_.p.damping.mass};
   }

@@ -36,7 +36,7 @@ void settle(const Mesh& mesh, const SparseMatrix& stiffness, const VectorXd& too
     if (too_long[j] != 0) response.relieve(j, -shape.stiffness[j] * too_long[j], shape.stiffness, trial);
   if (!Slackening(shape.stiffness).solve(trial, response, shape.slack))
     refuse("line.table: no static state with droppers of these lengths was found");
-  for (int j = 0; j < n; ++j) response.add(j, -shape.stiffness[j] * (shape.slack[j] - too_long[j]), u);
+  response.add(1, shape.stiffness, shape.slack, too_long, u);
   shape.height += u;
   for (int j = 0; j < n; ++j) {
     const double change = stretch(mesh, u, j);
