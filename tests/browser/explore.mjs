@@ -1,17 +1,15 @@
 // Uses the explorer's page as a person does, in a headless browser; prints as JSON what it showed.
 //
-//     node explore.mjs URL BROWSER PICTURE < {"ssv": TEXT, "csv": TEXT, "broken": TEXT}
+//     node explore.mjs URL FOLDER [FIREFOX] < {"ssv": TEXT, "csv": TEXT, "broken": TEXT}
 //
-// BROWSER: a Chromium of the system, as the packed one of the report's tests fails on controls of forms;
-// PICTURE: where the screenshot goes.
+// FOLDER, FIREFOX: of the browser, see launch.mjs; the screenshot goes into FOLDER as explorer.png.
 
 import { readFileSync } from "node:fs";
-import { chromium } from "playwright-core";
+import { launch, saved } from "./launch.mjs";
 
-const [, , url, executablePath, picture] = process.argv;
+const [, , url, folder, firefox] = process.argv;
 const given = JSON.parse(readFileSync(0, "utf-8"));
-const quiet = ["--disable-background-networking", "--disable-sync", "--no-first-run"];
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu", ...quiet] });
+const browser = await launch(folder, firefox);
 const told = { errors: [], requests: [] };
 const REFINED = "every 0.125 Hz";
 
@@ -28,10 +26,7 @@ try {
   const rows = (selector) => page.$$eval(`${selector} tr`, (found) => found.map((row) => Array.from(row.cells, (cell) => cell.textContent)));
   const until = (test, ...arguments_) => page.waitForFunction(test, arguments_, { timeout: 120_000 });
   const state = (id, start) => until(([name, expected]) => document.getElementById(name).textContent.startsWith(expected), id, start);
-  const saved = async (button) => {
-    const [file] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
-    return readFileSync(await file.path(), "utf-8");
-  };
+  const save = (button) => saved(page, button, folder, firefox);
   const drop = async (name, content) => {
     const transfer = await page.evaluateHandle(([title, body]) => {
       const made = new DataTransfer();
@@ -39,6 +34,10 @@ try {
       return made;
     }, [name, content]);
     await page.dispatchEvent("body", "drop", { dataTransfer: transfer });
+  };
+  const write = async (field, value) => { // Playwright's fill appends in Firefox
+    await page.press(field, "Control+A");
+    await page.keyboard.type(value);
   };
   const measured = async () => {
     await page.waitForTimeout(600); // longer than the rest after which it measures anew
@@ -51,51 +50,52 @@ try {
   await until(() => document.getElementById("point-text").textContent.includes("Hz"));
   told.point = await text("#point-text");
   told.synthetic = await text("#synthetic");
-  await page.screenshot({ path: picture });
-  told.start = await saved("#frf-csv");
+  await page.screenshot({ path: `${folder}/explorer.png` });
+  told.start = await save("#frf-csv");
 
   await page.focus('[id="slider-zspring.Mf"]'); // the keyboard moves it
   for (let i = 0; i < 40; ++i) await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Tab");
   await measured();
   told.friction = await page.inputValue('[id="value-zspring.Mf"]');
-  told.moved = await saved("#frf-csv");
+  told.moved = await save("#frf-csv");
   told.address = await page.evaluate(() => location.hash);
   told.command = await page.inputValue("#command");
 
   await drop("own.ssv", given.ssv);
   await measured();
   told.dropped = await page.inputValue('[id="value-m1"]');
-  told.written = await saved("#save");
+  told.written = await save("#save");
   await drop("measured.csv", given.csv);
   await page.waitForTimeout(300);
   told.afterCsv = await page.isVisible("#message");
   await drop("broken.ssv", given.broken);
   await page.waitForSelector("#message:not([hidden])");
   told.refusal = await text("#message");
-  await page.fill('[id="value-m1"]', "-3");
+  await write('[id="value-m1"]', "-3");
   await page.keyboard.press("Tab");
+  await state("message", "m1");
   told.outOfBounds = await text("#message");
 
   await page.click("#reset");
   await page.click("#tab-line");
   await page.selectOption("#line-set", "en-50318-2002");
-  await page.fill("#speed", "200");
+  await write("#speed", "200");
   await page.click("#run");
   await until(() => document.querySelectorAll("#statistics td").length > 0);
   told.statistics = await rows("#statistics");
   told.frames = Number(await page.getAttribute("#place", "max")) + 1;
-  told.line = await saved("#line-csv");
+  told.line = await save("#line-csv");
   await page.click("#sweep");
   await state("line-state", "sweep: 33 of 33");
-  told.sweep = await saved("#sweep-csv");
+  told.sweep = await save("#sweep-csv");
 
   await page.click("#tab-static");
   await until(() => document.querySelectorAll("#stiffness td").length > 0);
   told.stiffness = await rows("#stiffness");
   await page.click("#tab-slip");
   await state("slip-state", "27 of 27");
-  told.slip = await saved("#slip-csv");
+  told.slip = await save("#slip-csv");
 
   await page.setViewportSize({ width: 390, height: 800 });
   await page.click("#tab-frf");

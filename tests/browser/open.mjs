@@ -2,26 +2,12 @@
 //
 //     node open.mjs URL FOLDER
 //
-// FOLDER: where the browser is unpacked, on Linux. Other systems' own Chrome or Edge is used.
+// FOLDER: for the browser, see launch.mjs.
 
-import { chromium } from "playwright-core";
+import { launch } from "./launch.mjs";
 
 const [, , url, folder] = process.argv;
-
-async function launch() {
-  if (process.platform !== "linux") {
-    return chromium.launch({ channel: process.platform === "win32" ? "msedge" : "chrome" });
-  }
-  // The package unpacks the libraries it brings only where it believes itself in this environment.
-  process.env.AWS_EXECUTION_ENV = "AWS_Lambda_nodejs24.x";
-  process.env.TMPDIR = folder;
-  const { default: packed } = await import("@sparticuz/chromium");
-  packed.setGraphicsMode = false;
-  const executablePath = await packed.executablePath();
-  return chromium.launch({ executablePath, args: ["--no-sandbox", "--no-zygote", "--disable-gpu"] });
-}
-
-const browser = await launch();
+const browser = await launch(folder);
 try {
   const page = await browser.newPage();
   const errors = [];

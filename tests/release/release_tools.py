@@ -21,8 +21,8 @@ TOOLS = ROOT / "build" / "clients"  # kept from one run to the next
 INSTALL = {
     "c++": "apt install g++",
     "cargo": "install Rust from rustup.rs",
-    "chromium": "apt install chromium",
     "clang++": "apt install clang libclang-rt-dev",
+    "firefox": "apt install firefox-esr",
     "java": "apt install default-jre",
     "javac": "apt install default-jdk",
     "mvn": "apt install maven",

@@ -29,15 +29,15 @@ OWN = """<ParameterSet xmlns="http://ssp-standard.org/SSP1/SystemStructureParame
 <Parameters><Parameter name="m1"><Real value="8" unit="kg"/></Parameter></Parameters></ParameterSet>"""
 
 
-@pytest.fixture(scope="module")
-def told(tmp_path_factory) -> dict:
+@pytest.fixture(scope="module", params=["chromium", "firefox"])
+def told(request, tmp_path_factory) -> dict:
     """What browser/explore.mjs saw."""
     folder = tmp_path_factory.mktemp("explorer with spaces")
     path = folder / "explorer.html"
     path.write_text(page(), "utf-8")
-    script, picture = TESTS / "browser" / "explore.mjs", folder / "explorer.png"
+    script, own = TESTS / "browser" / "explore.mjs", [tool("firefox")] if request.param == "firefox" else []
     done = node(
-        [str(script), path.as_uri(), tool("chromium"), str(picture)],
+        [str(script), path.as_uri(), str(folder), *own],
         return_completed_process=True,
         input=json.dumps({"ssv": OWN, "csv": MEASURED, "broken": "<ParameterSet>"}),
         capture_output=True,
@@ -45,7 +45,7 @@ def told(tmp_path_factory) -> dict:
         timeout=400,
     )
     assert isinstance(done, subprocess.CompletedProcess) and done.returncode == 0, done.stderr
-    return {**json.loads(done.stdout), "path": path, "picture": picture}
+    return {**json.loads(done.stdout), "path": path, "picture": folder / "explorer.png"}
 
 
 def table(text: str) -> list[dict[str, str]]:
@@ -67,7 +67,7 @@ def responses(text: str) -> dict[tuple[float, float], complex]:
 
 
 def test_it_is_one_file_that_asks_for_nothing_and_complains_of_nothing(told):
-    assert told["requests"] == [told["path"].as_uri()]
+    assert set(told["requests"]) <= {told["path"].as_uri()}
     assert told["errors"] == []
     assert told["path"].stat().st_size < 600_000
     assert told["picture"].read_bytes().startswith(b"\x89PNG")
