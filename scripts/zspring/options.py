@@ -120,7 +120,7 @@ NUMBER, POSITIVE, NOT_NEGATIVE = Number(), NumberRange(min=0, min_open=True), Nu
 
 def option(*names: str, help: str, default=None, kind=NUMBER, metavar: str | None = None):
     """click's option, which shows its default unless `help` tells it in words."""
-    shown = default is not None and "[default: " not in help
+    shown = default not in (None, ()) and "[default: " not in help
     return click.option(*names, type=kind, default=default, show_default=shown, metavar=metavar, help=help)
 
 

