@@ -74,7 +74,7 @@ def figures(out: str) -> dict[str, str]:
 
 def test_the_first_case_alone_is_quick_and_whole(quick):
     folder, out = quick
-    assert "all 8 figures are inside their accepted ranges" in out and "1 runs in" in out
+    assert "all 8 values are inside their accepted ranges" in out and "1 runs in" in out
     names = {path.name for path in folder.iterdir()}
     assert {"report.html", "runs.csv", "en-50318-2002-250-km-h.csv", "en-50318-2002-250-km-h.png"} <= names
     assert any(line.startswith("# Catenary SHA-256: ") for line in head(folder / "runs.csv"))
@@ -94,7 +94,7 @@ def test_the_series_of_our_run_gives_the_same_figures_as_a_users_file(quick, tmp
     found = figures(out)
     assert found["standard deviation, 0-20 Hz, N"] == f"{float(row['standard_deviation [N]']):.1f}"
     assert found["largest uplift at a support, mm"] == f"{float(row['support_uplift [mm]']):.1f}"
-    assert "all 8 figures are inside" in out
+    assert "all 8 values are inside" in out
     assert (tmp_path / "own/report.html").stat().st_size > 50_000
     before = (tmp_path / "own/report.html").read_bytes()
     for other in (["--series", str(file)], ["--quick"]):
@@ -123,7 +123,7 @@ def test_a_simulation_is_compared_with_a_line_test(quick, tmp_path):
         "--output",
         "own",
     )
-    assert "1 of 1 figures are outside their accepted ranges" in out
+    assert "1 of 1 values are outside their accepted ranges" in out
     assert "by -13.3 %" in out  # -33.3 % where 20 % are accepted
 
 
@@ -208,7 +208,7 @@ def test_an_own_pantograph_is_counted_apart(quick, tmp_path):
     force = np.array([float(row["contact force 1 [N]"]) for row in table(tmp_path / "couple/line.csv")])
     own = table(folder / "own-pantograph-en-50318-2002-250-km-h.csv")
     assert [float(row["contact force 1 [N]"]) for row in own] == pytest.approx(force, abs=1e-6)
-    assert "all 8 figures are inside" in out and out.count("accepted ranges") == 1
+    assert "all 8 values are inside" in out and out.count("accepted ranges") == 1
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "Own pantograph: dsa-250" in page and "not for this pantograph" in page
 
@@ -227,7 +227,7 @@ def test_an_own_pair_runs_as_couple_does_and_beside_the_reference(quick, tmp_pat
     assert float(row["mean_force [N]"]) == pytest.approx(108.8, abs=0.1)
     first = out.splitlines()[1 if out.startswith("going on") else 0]
     assert first.split("  ")[0] == "own pair, dsa-250 on benchmark-2015" and "200 km/h" in first
-    assert out.count("accepted ranges") == 1 and "EN 50318:2002: all 8 figures are inside" in out
+    assert out.count("accepted ranges") == 1 and "EN 50318:2002: all 8 values are inside" in out
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "Own pair: dsa-250 on benchmark-2015" in page and "line: contact_wire.tension" in page
 
@@ -298,7 +298,7 @@ def test_two_pantographs_have_the_mean_force_of_the_case_and_each_its_figures(tm
     case = case.replace(
         "first_span = 2\nlast_span = 3\nstatic_force = 100", "first_span = 4\nlast_span = 4\nspacing = 40"
     )
-    case = case.replace("[case.ranges]", "mean_force = 110\nfigures = ['standard_deviation_20_50']\n[case.ranges]")
+    case = case.replace("[case.ranges]", "mean_force = 110\nvalues = ['standard_deviation_20_50']\n[case.ranges]")
     trailing = "[case.trailing_ranges]\nmean_force = [109, 111]\n'uplift_at_215' = [1, 2]\n"
     (tmp_path / "edition.toml").write_text(EDITION + case + trailing, encoding="utf-8")
     out, _ = zspring(tmp_path, "en50318", "--edition", "edition.toml", "--output", "out")

@@ -114,7 +114,7 @@ def test_a_mean_force_is_met_by_runs_and_a_law_by_statics(fmus, tmp_path):
 def test_a_second_pantograph_has_its_own_columns(fmus, tmp_path):
     """The leading one of two is as it is alone, but for the waves that the other one sends along."""
     text = f"{SHORT}[vary]\ncouple.pantographs = [1, 2]\n[couple]\nstart = 80\nspacing = 60\nspans = [3, 3]\n"
-    alone, two = measured(f'{text}figures = ["mean_force", "standard_deviation"]\n', fmus, tmp_path)
+    alone, two = measured(f'{text}values = ["mean_force", "standard_deviation"]\n', fmus, tmp_path)
     assert list(alone) == ["mean_force 1 [N]", "standard_deviation 1 [N]", *list(alone)[2:]]
     assert not any(" 2 [" in name for name in alone)
     assert two["mean_force 2 [N]"] == pytest.approx(two["mean_force 1 [N]"], abs=8)
@@ -167,7 +167,7 @@ def test_what_a_result_must_not_be_read_without_is_told(fmus, tmp_path):
         ('[vary]\ncouple.mean_force = ["DC"]\n[couple]', "'DC': must be one of AC, DC-3kV, DC-1.5kV"),
         ("[vary]\nm1 = [7]\n[couple]\nspans = [4, 3]", r"spans = \[4, 3\]: must be \[first, last\] span"),
         ("[vary]\nm1 = [7]\n[couple]\npantographs = 3", r"couple.pantographs = 3: must be at most 2"),
-        ('[vary]\nm1 = [7]\n[couple]\nfigures = ["sigma"]', r"figures = \['sigma'\]: must be some of mean_force, "),
+        ('[vary]\nm1 = [7]\n[couple]\nvalues = ["sigma"]', r"values = \['sigma'\]: must be some of mean_force, "),
         ("[vary]\nm1 = [7]\n[couple]\nvelocity = 200", "unknown key 'velocity'"),
         (
             "[vary]\ncouple.speed = [200]\n[couple]\nspeed = 250",
@@ -211,7 +211,7 @@ def test_two_ways_to_an_uplift_are_refused(fmus, tmp_path):
 def test_uplift_at_mid_span_says_how_many_spans_were_watched(fmus, tmp_path):
     """Seven points that are asked for leave one of the FMU's eight for the middles of two spans."""
     points = ", ".join(f'"uplift_at_{x}"' for x in range(61, 68))
-    text = f'{SHORT}[vary]\ncouple.speed = [200]\n[couple]\nspans = [2, 3]\nfigures = ["midspan_uplift"%s]\n'
+    text = f'{SHORT}[vary]\ncouple.speed = [200]\n[couple]\nspans = [2, 3]\nvalues = ["midspan_uplift"%s]\n'
     remark = "the largest uplift at mid-span is that of 1 of the 2 spans, which were watched"
     (few,), (all_of_them,) = (measured(text % more, fmus, tmp_path) for more in (f", {points}", ""))
     assert remark in few["remarks"] and "mid-span" not in all_of_them["remarks"]

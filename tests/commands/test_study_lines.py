@@ -385,7 +385,7 @@ def rows_of(settings: StudySettings, value) -> dict[int, dict[str, str]]:
 
 def test_differences_are_those_of_pairs_on_the_same_lines(fmus, tmp_path):
     """Student's interval of paired samples, by scipy; a case without a value takes its pair along."""
-    settings = study_of(GRID + 'figures = ["standard_deviation"]\n' + COMPARING, fmus, tmp_path)
+    settings = study_of(GRID + 'values = ["standard_deviation"]\n' + COMPARING, fmus, tmp_path)
     draws = np.random.default_rng(5)
     of_line, own = draws.normal(30, 5, 13), draws.normal(0, 1, (2, 2, 3, 13))
 
@@ -417,7 +417,7 @@ def test_differences_are_those_of_pairs_on_the_same_lines(fmus, tmp_path):
 def test_along_one_line_cases_are_one_sample(fmus, tmp_path):
     """Starts are no parameters of a line: a grid without irregular lines has them as its samples, by speed."""
     text = 'design = "grid"\n[vary]\ncouple.speed = [200, 300]\ncouple.start = [30, 40, 50]\n[couple]\n'
-    settings = study_of(text + 'figures = ["standard_deviation"]\n[compare]\na = {}\nb = {}\n', fmus, tmp_path)
+    settings = study_of(text + 'values = ["standard_deviation"]\n[compare]\na = {}\nb = {}\n', fmus, tmp_path)
     (quantity,) = settings.quantities
     assert isinstance(quantity, CoupledQuantity)
     rows = rows_of(settings, lambda case: case["couple.start"] * case["compare"])
@@ -430,7 +430,7 @@ def test_along_one_line_cases_are_one_sample(fmus, tmp_path):
 
 def test_cases_drawn_by_chance_along_one_line_have_intervals(fmus, tmp_path):
     text = 'design = "latin-hypercube"\nsamples = 6\n[vary]\nm1 = { from = 7, to = 8 }\n[couple]\n'
-    settings = study_of(text + 'figures = ["standard_deviation"]\n[compare]\na = {}\nb = {}\n', fmus, tmp_path)
+    settings = study_of(text + 'values = ["standard_deviation"]\n[compare]\na = {}\nb = {}\n', fmus, tmp_path)
     (quantity,) = settings.quantities
     assert isinstance(quantity, CoupledQuantity)
     rows = rows_of(settings, lambda case: float(case["m1"]) * case["compare"])
@@ -482,9 +482,7 @@ def test_an_item_of_a_list_counts_once_however_many_its_lines(fmus, tmp_path):
 
 
 def test_a_study_of_irregular_lines_writes_its_tables_and_figures(tmp_path):
-    text = (
-        GRID + 'spans = [3, 3]\nfigures = ["standard_deviation"]\n[vary]\ncouple.speed = [280, 300]\n[irregularity]\n'
-    )
+    text = GRID + 'spans = [3, 3]\nvalues = ["standard_deviation"]\n[vary]\ncouple.speed = [280, 300]\n[irregularity]\n'
     text += "lines = 3\ndropper_length = 0.01\n[compare]\nZ = {}\nlocked = { suspension = 'LinearLocked' }\n"
     (tmp_path / "study.toml").write_text(text)
     out, err = zspring(tmp_path, "study", "study.toml", "--output", "out", "--workers", "2")
@@ -502,7 +500,7 @@ def test_a_study_of_irregular_lines_writes_its_tables_and_figures(tmp_path):
     couple, _ = zspring(tmp_path, "couple", *run)
     assert rows[10]["couple.speed [km/h]"] == "300" and rows[10]["irregularity.line"] == "3"
     assert f"deviation, 0-20 Hz   {float(rows[10]['standard_deviation [N]']):.1f}   N" in couple
-    assert len(told) == 2 and "of 2 intervals of all figures are" in out
+    assert len(told) == 2 and "of 2 intervals of all values are" in out
     for name in ("sweep", "differences", "distribution"):
         assert (tmp_path / f"out/{name}.png").read_bytes().startswith(PNG)
 

@@ -103,14 +103,14 @@ def test_verdicts_count_and_name_what_is_outside():
     ranges = {"mean_force": (90.0, 110.0), "actual_minimum": (10.0, 20.0), "actual_maximum": (100.0, 150.0)}
     judged = {"slow": judge(FOUND, {"mean_force": (90.0, 110.0)}), "fast": judge(FOUND, ranges)}
     assert report.verdict("X", judged) == (
-        "X: 2 of 4 figures are outside their accepted ranges: actual minimum at fast by -5 N, "
+        "X: 2 of 4 values are outside their accepted ranges: actual minimum at fast by -5 N, "
         "actual maximum at fast by +20 N"
     )
-    assert report.verdict("X", {"slow": judged["slow"]}) == "X: all 1 figures are inside their accepted ranges"
+    assert report.verdict("X", {"slow": judged["slow"]}) == "X: all 1 values are inside their accepted ranges"
     unknown = judge({**FOUND, "mean_force": math.nan}, ranges)
-    assert "X: 2 of 2 figures are outside" in report.verdict("X", {"fast": unknown})
+    assert "X: 2 of 2 values are outside" in report.verdict("X", {"fast": unknown})
     assert report.verdict("X", {"fast": unknown}).endswith("; 1 are not known")
-    assert report.verdict("X", {"a": unknown[:1]}) == "X: none of the 1 figures with accepted ranges is known"
+    assert report.verdict("X", {"a": unknown[:1]}) == "X: none of the 1 values with accepted ranges is known"
 
 
 def test_departures_count_choices_not_figures():
@@ -289,9 +289,9 @@ def test_a_difference_is_judged_in_percent_of_the_line_test(factor, difference, 
     assert texts(rows["mean force, N"]) == ["100.0", "100.0", "", "", ""]
     sentence = chapter.blocks[1]
     if said == "inside":
-        assert sentence == "Simulation against line test: all 3 figures are inside their accepted ranges."
+        assert sentence == "Simulation against line test: all 3 values are inside their accepted ranges."
     else:
-        assert "1 of 3 figures are outside their accepted ranges: largest uplift at a support" in sentence
+        assert "1 of 3 values are outside their accepted ranges: largest uplift at a support" in sentence
         assert sentence.endswith(f"by {said.removeprefix('outside by ')} %.")
 
 
@@ -307,7 +307,7 @@ def test_what_the_line_test_has_as_nothing_is_not_judged(whose, value):
     if whose == "simulated" and value == 0.0:
         assert judged == ["-100.0 %", "± 20 %", "outside by -80"]
     else:
-        assert judged == ["", "", ""] and "all 2 figures are inside" in chapter.blocks[1]
+        assert judged == ["", "", ""] and "all 2 values are inside" in chapter.blocks[1]
 
 
 def test_series_are_shown_side_by_side_with_dashes_for_what_they_do_not_tell():

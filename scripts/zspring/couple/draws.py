@@ -1,4 +1,4 @@
-"""The same run for each of many draws of the pantograph's parameters: what their uncertainty does to the figures."""
+"""The same run for each of many draws of the pantograph's parameters: what their uncertainty does to the values."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ..variables import Value
 from .plot import draws_figure
 from .report import SHOWN
 
-Draw = tuple[int, int, Statistics]  # number, 0 for the parameters as given; pantograph, from 1; its figures
+Draw = tuple[int, int, Statistics]  # number, 0 for the parameters as given; pantograph, from 1; its values
 
 
 def run_draws(
@@ -70,7 +70,7 @@ def run_draws(
             for i, section in enumerate(where):
                 yield number, i + 1, statistics(result.series(i), section)
 
-    fill(record, len(sets) * count, len(missing) * count, "figures", work)
+    fill(record, len(sets) * count, len(missing) * count, "runs", work)
     record.write(sorted(record.results, key=lambda row: row[:2]))
     lines, drawn = [], {}
     for i in range(count):

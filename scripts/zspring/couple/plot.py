@@ -117,7 +117,7 @@ def comparison_figure(rows: Sequence[Comparison], title: str) -> Figure:
 
 
 def draws_figure(drawn: Mapping[str, tuple[Statistics, Mapping[str, np.ndarray]]], title: str) -> Figure:
-    """Histograms of figures over draws, by pantograph, with those of the parameters as given; of those that differ."""
+    """Histograms of values over draws, by pantograph, with those of the parameters as given; of those that differ."""
     first = next(iter(drawn.values()))[1]
     names = [name for name in first if any(np.ptp(values[name]) > 0 for _, values in drawn.values())] or list(first)
     rows = -(-len(names) // 2)

@@ -21,7 +21,7 @@ SHOWN = (
 
 
 def summary(result: LineResult, chosen: Sequence[Section | None]) -> list[str]:
-    """Lines with the main figures of each pantograph over its section. Raises ZSpringError where there are none."""
+    """Lines with the main values of each pantograph over its section. Raises ZSpringError where there are none."""
     found = [statistics(result.series(i), section) for i, section in enumerate(chosen)]
     where = dict.fromkeys(str(section or "the whole run") for section in chosen)
     rows = []

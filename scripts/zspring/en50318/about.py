@@ -1,4 +1,4 @@
-"""The chapters of every report that say what it proves, how figures are taken, and what made it."""
+"""The chapters of every report that say what it proves, how values are taken, and what made it."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def own_runs() -> Chapter:
     """What a report on our runs proves, and what not."""
     shows = (
         "What it shows: the finite-element line and the coupling, with published data for line and pantograph, "
-        "come to the figures in this report; how far single choices and numerical settings move them; and, where "
-        "ranges are given, which figures lie inside."
+        "come to the values in this report; how far single choices and numerical settings move them; and, where "
+        "ranges are given, which values lie inside."
     )
     not_shown = (
         "What it does not show: that any simulation of a real line is right. The data and ranges of EN 50318:2002 "
         "are second-hand, as papers and codes quote them, and that edition is superseded; where they leave a "
-        "choice, published values were chosen knowing the ranges, so that figures inside are no validation. "
+        "choice, published values were chosen knowing the ranges, so that values inside are no validation. "
         "Those of EN 50318:2018 are not public and have to be put in by the user. No line test and no measured "
         "pantograph is compared. The line is planar (no stagger, no lateral motion) with small displacements, "
         "the pantograph a few lumped masses: results hold for 0 to 20 Hz. The Z-spring's parameters are "
@@ -44,7 +44,7 @@ def own_runs() -> Chapter:
 def own_data() -> Chapter:
     """What a report on a user's data proves, and what not."""
     shows = (
-        "What it shows: figures of the given data, taken as told below; how they compare with each other, with "
+        "What it shows: values of the given data, taken as told below; how they compare with each other, with "
         "the FMU's frequency response and with accepted ranges, as far as these are given."
     )
     not_shown = (
@@ -56,9 +56,9 @@ def own_data() -> Chapter:
 
 
 def method() -> Chapter:
-    """How the figures are taken."""
+    """How the values are taken."""
     return Chapter(
-        "How the figures are taken",
+        "How the values are taken",
         [
             f"Filter: a Butterworth low-pass of order {ORDER} at {BAND:g} Hz, run forwards and backwards over the "
             "whole series before spans are cut out: no phase shift; gain 0.5 (-6 dB) at the band's edge, 0.71 at "

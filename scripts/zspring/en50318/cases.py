@@ -59,7 +59,7 @@ def case_run(group: str, of: str, case: Case, line: ChosenLine, pantograph: Para
 
 
 def is_fine(figures: Iterable[str]) -> bool:
-    """Whether figures ask for a finer mesh and finer steps."""
+    """Whether values ask for a finer mesh and finer steps."""
     return any(high > BAND for _, high in filter(None, map(band_of, figures)))
 
 

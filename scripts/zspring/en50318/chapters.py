@@ -74,7 +74,7 @@ def outcome(edition: Edition, runs: Sequence[Run], done: Mapping[str, Finished],
 
 
 def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
-    """Figures against ranges, forces along the line, figures by span, parameters with their sources."""
+    """Values against ranges, forces along the line, values by span, parameters with their sources."""
     edition, judged = made.edition, made.judged
     chapter = Chapter(edition.name, [f"Source: {' '.join(edition.source.split())}"])
     if any(judged.values()):
@@ -124,7 +124,7 @@ def judged_choices(
 
 
 def sensitivity_chapter(made: Outcome, found: Mapping[str, Mapping[str, Statistics]]) -> Chapter:
-    """What other choices do to the figures of an edition's cases; `found` as `choices` gives it."""
+    """What other choices do to the values of an edition's cases; `found` as `choices` gives it."""
     drawn, listed, judged = {}, [], judged_choices(made, found)
     for each in made.leading:
         case, reference = each.case, each.found
@@ -138,7 +138,7 @@ def sensitivity_chapter(made: Outcome, found: Mapping[str, Mapping[str, Statisti
         "What the published data leave open, and the numerical settings, one at a time from the reference, whose "
         "sources are told with its parameters above. Filters of order 2 and 8 are run twice like that of order 4, "
         "which the reference has. Figures outside their accepted ranges are marked. The reference was chosen "
-        "among published values with the ranges in view: that its figures are inside is the agreement of a chosen "
+        "among published values with the ranges in view: that its values are inside is the agreement of a chosen "
         "set and no validation; how many of these choices are inside tells more."
     )
     return Chapter(f"Sensitivity of {made.edition.name}", [text, f"{report.departures(judged)}.", picture, *listed])

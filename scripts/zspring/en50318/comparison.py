@@ -34,7 +34,7 @@ def by_head(runs: Sequence[Run], done: Mapping[str, Finished]) -> ByHead:
 
 
 def whole(made: Sequence[Finished], name: str) -> np.ndarray:
-    """A figure over the section, by start. (s,)"""
+    """A value over the section, by start. (s,)"""
     return np.array([finished.statistics[name] for finished in made])
 
 
@@ -52,7 +52,7 @@ def differences(made: Sequence[Finished], linear: Sequence[Finished], name: str)
 
 
 def difference_table(found: ByHead, head: str, linear: str) -> Table:
-    """Differences of a head from the linear one, by figure and speed: mean, then the spread."""
+    """Differences of a head from the linear one, by value and speed: mean, then the spread."""
     speeds = list(found[head])
     rows: list[list[str | Cell]] = []
     for name in BY_SPAN:
@@ -67,7 +67,7 @@ def difference_table(found: ByHead, head: str, linear: str) -> Table:
 
 
 def level_table(found: ByHead, name: str) -> Table:
-    """A figure by head and speed: mean of all starts, and the range where there are several."""
+    """A value by head and speed: mean of all starts, and the range where there are several."""
     digits, rows = FIGURES[name][2], []
     for head, by_speed in found.items():
         each = [whole(made, name) for made in by_speed.values()]

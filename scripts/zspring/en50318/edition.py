@@ -26,11 +26,11 @@ MOST_SPEED = 600.0  # km/h
 
 
 def _known(figures: Any) -> Any:
-    """A list of figures, or values by figure. Raises ValueError for a name that is none."""
+    """A list of names of values, or numbers by name. Raises ValueError for a name that is none."""
     for name in figures if isinstance(figures, (Mapping, list)) else ():
         if isinstance(name, str) and not is_figure(name):
             other = did_you_mean(name, FIGURES) or f": free ones are {FREE}"
-            raise ValueError(f"unknown figure {name!r}{other}")
+            raise ValueError(f"unknown value {name!r}{other}")
     return figures
 
 
@@ -52,7 +52,7 @@ class Case(Table):
     given_force: Positive | None = Field(None, alias="static_force", description="N")
     supply: Supply = Field("", description="whose mean force by speed the run has")
     given_mean: Positive | None = Field(None, alias="mean_force", description="N, that the run has")
-    figures: Annotated[list[str], BeforeValidator(_known)] = Field([], description="further ones that are told")
+    values: Annotated[list[str], BeforeValidator(_known)] = Field([], description="further ones that are told")
     ranges: Ranges = Field({}, description="in the units of FIGURES, of the leading pantograph or the only one")
     trailing_ranges: Ranges = Field({}, description="of the trailing one")
 
@@ -72,7 +72,7 @@ class Case(Table):
     @property
     def further(self) -> tuple[str, ...]:
         """Figures that are told besides FIGURES."""
-        names = (*self.figures, *self.ranges, *self.trailing_ranges)
+        names = (*self.values, *self.ranges, *self.trailing_ranges)
         return tuple(dict.fromkeys(name for name in names if name not in FIGURES))
 
     @property
@@ -118,10 +118,10 @@ class Edition(Table):
         return self
 
     def with_figures(self, names: Sequence[str]) -> Edition:
-        """The edition with further figures that each case tells."""
+        """The edition with further values that each case tells."""
         if not names:
             return self
-        cases = [case.model_copy(update={"figures": [*case.figures, *names]}) for case in self.cases]
+        cases = [case.model_copy(update={"values": [*case.values, *names]}) for case in self.cases]
         return self.model_copy(update={"cases": cases})
 
     def only_first(self) -> Edition:
@@ -140,7 +140,7 @@ class Edition(Table):
 
 @dataclass(frozen=True)
 class Judgement:
-    """A figure beside its accepted range; `outside` is how far it is beyond, 0 inside, in the figure's unit."""
+    """A value beside its accepted range; `outside` is how far it is beyond, 0 inside, in the value's unit."""
 
     name: str
     value: float
@@ -175,7 +175,7 @@ def sources_of(case: Case) -> list[tuple[str, str, dict[str, list[str]]]]:
 
 
 def judge(found: Statistics, ranges: Mapping[str, Range]) -> list[Judgement]:
-    """Every figure that has a range beside it; one that the series does not tell is outside by NaN."""
+    """Every value that has a range beside it; one that the series does not tell is outside by NaN."""
     return [Judgement(name, found[name], accepted) for name, accepted in ranges.items()]
 
 

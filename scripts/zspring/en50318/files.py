@@ -1,4 +1,4 @@
-"""The figures of all runs in one CSV, which survives an interruption at any moment."""
+"""The values of all runs in one CSV, which survives an interruption at any moment."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .plan import Run
 from .workers import OF_RUN, Finished
 
 FIGURE_COLUMNS = {name: f"{name} [{unit}]" if unit else name for name, (_, unit, _) in FIGURES.items()}
-SPANS = 4  # of a section at most, of which the figures by span are kept
+SPANS = 4  # of a section at most, of which the values by span are kept
 BY_SPAN = ("standard_deviation", "standard_deviation_5_20", "actual_minimum", "loss_of_contact")
 SPAN_COLUMNS = {
     (name, n): f"span {n + 1} of the section: {FIGURE_COLUMNS[name]}" for n in range(SPANS) for name in BY_SPAN
@@ -41,7 +41,7 @@ def run_record(path: Path, head: Mapping[str, str]) -> Record[Finished]:
 
 
 def missing(record: Record[Finished], runs: Iterable[Run]) -> list[Run]:
-    """Runs whose figures or series are not there. Raises ZSpringError where two would write one file.
+    """Runs whose values or series are not there. Raises ZSpringError where two would write one file.
 
     A series of that name may be another run's: of other settings, or of another line or pantograph under its name.
     """

@@ -1,4 +1,4 @@
-"""A simulation beside the line test that it is to agree with: figures with what is accepted, places, spectra."""
+"""A simulation beside the line test that it is to agree with: values with what is accepted, places, spectra."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .edition import Edition, Judgement, agreement
 
 SEGMENT = 2.0  # s, of the spectra: a resolution of 0.5 Hz
 PRINTED = ("mean_force", "standard_deviation", "standard_deviation_5_20", "actual_minimum")  # span by span
-BY_PLACE = (  # figures told span by span
+BY_PLACE = (  # values told span by span
     "mean_force",
     "standard_deviation",
     "standard_deviation_0_5",
@@ -72,7 +72,7 @@ class Comparison:
         return chapter
 
     def section_tables(self) -> list[Table]:
-        """All figures of each section beside what is accepted."""
+        """All values of each section beside what is accepted."""
         each = zip(self.sections, self.judged.values(), self.simulated, self.measured)
         return [
             report.agreement_table(mine, theirs, limits, f"Simulation and line test, {section or 'the whole series'}")
@@ -80,7 +80,7 @@ class Comparison:
         ]
 
     def place_tables(self, names: Sequence[str]) -> list[Table]:
-        """These figures by section where there are several, and by span."""
+        """These values by section where there are several, and by span."""
         tables = []
         if len(self.sections) > 1:
             both = dict(zip(self.judged, zip(self.simulated, self.measured)))

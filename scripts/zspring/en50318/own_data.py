@@ -46,7 +46,7 @@ class OwnData:
     pantograph: int
     line: ChosenLine | None = None  # whose spans are meant
     turned: Sequence[str] = ()  # of "series" and "line-test", those whose forces have the other sign
-    further: Sequence[str] = ()  # figures to tell besides those of every evaluation and of the case
+    further: Sequence[str] = ()  # values to tell besides those of every evaluation and of the case
 
     def told(self) -> dict[str, str]:
         """What was chosen, in words."""

@@ -56,7 +56,7 @@ class OwnPair:
                 "spacing": self.spacing,
                 "static_force": float(static_force),
                 "supply": self.supply,
-                "figures": list(self.figures),
+                "values": list(self.figures),
             }
             cases.append(Case.model_validate(given))
         return Edition.model_validate({"edition": f"own pair, {self.name}", "source": "one's own", "case": cases})

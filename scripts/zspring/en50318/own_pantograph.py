@@ -82,7 +82,7 @@ def name_of(parameter_set: str | None, assignments: Sequence[str]) -> str:
 
 
 def lines(name: str, own: Outcome, reference: Outcome, catenary: Fmu) -> list[str]:
-    """What the command prints: main figures by case, those of the reference in brackets, and the limit of quality."""
+    """What the command prints: main values by case, those of the reference in brackets, and the limit of quality."""
     rows: list[list[str | Cell]] = []
     for figure in (*report.SENSITIVE, "loss_of_contact"):
         pairs = zip(own.passages, reference.passages)

@@ -1,4 +1,4 @@
-"""What one pantograph came to in a case's run: its series, figures, and what they are judged by."""
+"""What one pantograph came to in a case's run: its series, values, and what they are judged by."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Passage:
         return judge(self.found, self.case.trailing_ranges if self.number else self.case.ranges)
 
     def by_span(self) -> dict[str, Statistics]:
-        """The figures of each span of the section by its name."""
+        """The values of each span of the section by its name."""
         spans = self.run.section.single_spans()
         return {str(s).split(",")[0]: statistics(self.series, s, further=self.case.further) for s in spans}
 

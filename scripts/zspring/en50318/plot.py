@@ -70,7 +70,7 @@ def force_figure(series: Series, section: Section | None, found: Statistics, tit
 
 
 def ranges_figure(by_case: Mapping[str, Sequence[Judgement]], title: str) -> Figure:
-    """Each figure between the ends of its accepted range, which is 0 to 1; ranges without width are left out."""
+    """Each value between the ends of its accepted range, which is 0 to 1; ranges without width are left out."""
     names = list(dict.fromkeys(j.name for judgements in by_case.values() for j in judgements if _width(j)))
     figure = new_figure(9, 1.5 + 0.38 * len(names))
     axes = figure.subplots()
@@ -119,7 +119,7 @@ def sensitivity_figure(
 def heads_figure(found: Mapping[str, Mapping[float, Mapping[str, np.ndarray]]], title: str) -> Figure:
     """Standard deviation in both bands, smallest force and loss of contact over the speed, by head: mean and range.
 
-    found   by head, speed in km/h and figure the values of all starts (s,)
+    found   by head, speed in km/h and name the values of all starts (s,)
     """
     figure = new_figure(10, 6.5)
     panels = figure.subplots(2, 2, sharex=True)

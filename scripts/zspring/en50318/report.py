@@ -30,7 +30,7 @@ SENSITIVE = (
 
 
 def number(name: str, value: float) -> str:
-    """A figure with its digits; a dash where the series does not tell it."""
+    """A value with its digits; a dash where the series does not tell it."""
     return "-" if math.isnan(value) else f"{value:.{described(name)[2]}f}"
 
 
@@ -51,7 +51,7 @@ def distance(judgement: Judgement) -> Cell:
 def case_table(
     found: Statistics, judgements: Sequence[Judgement], speed: float | None, caption: str, target: float | None = None
 ) -> Table:
-    """All figures at `speed` km/h, with the accepted ranges where there are any; then deviation and mean force
+    """All values at `speed` km/h, with the accepted ranges where there are any; then deviation and mean force
     beside what papers quote as the limits of current collection, or the mean force of the case, `target` N."""
     by_name = {judgement.name: judgement for judgement in judgements}
     rows = []
@@ -84,14 +84,14 @@ def figures_table(found: Mapping[str, Statistics], caption: str) -> Table:
 
 
 def spans_table(whole: Statistics, by_span: Mapping[str, Statistics], caption: str) -> Table:
-    """The figures span by span, and over all of them."""
+    """The values span by span, and over all of them."""
     return figures_table({**by_span, "all": whole}, caption)
 
 
 def sensitivity_table(
     reference: Statistics, choices: Mapping[str, Statistics], judged: Mapping[str, Sequence[Judgement]], caption: str
 ) -> Table:
-    """Main figures by choice; those outside their accepted ranges are marked."""
+    """Main values by choice; those outside their accepted ranges are marked."""
     rows: list[list[str | Cell]] = []
     for label, found in {"reference": reference, **choices}.items():
         outside = {judgement.name for judgement in judged[label] if not judgement.is_inside}
@@ -176,12 +176,12 @@ def table_told(table: LineTable) -> str:
 
 
 def departures(judged: Mapping[str, Mapping[str, Sequence[Judgement]]]) -> str:
-    """One sentence on how many other choices put a figure outside its range; `judged` by case and choice."""
+    """One sentence on how many other choices put a value outside its range; `judged` by case and choice."""
     counts = [
         f"{sum(any(j.outside for j in each) for each in choices.values())} of {len(choices)} at {case}"
         for case, choices in judged.items()
     ]
-    return f"Choices with which at least one figure is outside its accepted range: {', '.join(counts)}"
+    return f"Choices with which at least one value is outside its accepted range: {', '.join(counts)}"
 
 
 def as_lines(table: Table) -> list[str]:
@@ -191,11 +191,11 @@ def as_lines(table: Table) -> list[str]:
 
 
 def verdict(name: str, judged: Mapping[str, Sequence[Judgement]], unit: str | None = None) -> str:
-    """One sentence on how many figures are inside their ranges; `unit` where it is not the figures' own."""
+    """One sentence on how many values are inside their ranges; `unit` where it is not the values' own."""
     counted = [(case, j) for case, each in judged.items() for j in each]
     known = [(case, j) for case, j in counted if not math.isnan(j.value)]
     if not known:
-        return f"{name}: none of the {len(counted)} figures with accepted ranges is known"
+        return f"{name}: none of the {len(counted)} values with accepted ranges is known"
     unknown = f"; {len(counted) - len(known)} are not known" if len(known) < len(counted) else ""
     outside = [
         f"{described(j.name)[0]} at {case} by {j.outside:+.3g} {unit or described(j.name)[1]}"
@@ -203,6 +203,6 @@ def verdict(name: str, judged: Mapping[str, Sequence[Judgement]], unit: str | No
         if not j.is_inside
     ]
     if not outside:
-        return f"{name}: all {len(known)} figures are inside their accepted ranges{unknown}"
+        return f"{name}: all {len(known)} values are inside their accepted ranges{unknown}"
     listed = ", ".join(outside)
-    return f"{name}: {len(outside)} of {len(known)} figures are outside their accepted ranges: {listed}{unknown}"
+    return f"{name}: {len(outside)} of {len(known)} values are outside their accepted ranges: {listed}{unknown}"

@@ -133,7 +133,7 @@ def _run_missing(
 
 
 def _summary(made: chapters.Outcome, catenary: Fmu) -> list[str]:
-    """Main figures of an edition's cases side by side, the verdict, and what to know beside it."""
+    """Main values of an edition's cases side by side, the verdict, and what to know beside it."""
     judged = made.judged
     rows = []
     further = dict.fromkeys(name for case in made.edition.cases for name in case.further)

@@ -12,7 +12,7 @@ from .edition import DEVIATION_SHARE, Judgement
 TITLE = "Summary"
 CRITERIA = (
     "Two criteria are judged, each for itself. The accepted ranges of an edition hold for its own line and "
-    "pantograph: whether figures are inside tells how a simulation agrees with others on a known case. The limit of "
+    "pantograph: whether values are inside tells how a simulation agrees with others on a known case. The limit of "
     f"standard deviation / mean force, {DEVIATION_SHARE:g} as papers quote it, is one of current collection: it tells "
     "how well a pantograph runs under a line, and nothing of the simulation. Nothing else is judged."
 )
@@ -35,7 +35,7 @@ def shares(name: str, found: Mapping[str, Statistics]) -> str:
 
 
 def ended(judged: Sequence[Judgement]) -> Cell:
-    """How many figures are inside their ranges."""
+    """How many values are inside their ranges."""
     if not judged:
         return Cell("none known")
     inside, unknown = sum(j.is_inside for j in judged), sum(math.isnan(j.value) for j in judged)

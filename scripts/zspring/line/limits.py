@@ -40,12 +40,12 @@ def untold_supports(catenary: Fmu, extent: LineExtent) -> list[str]:
         return []
     return [
         f"warning: a line of {extent.spans} spans: uplifts are told at its first {told} supports alone, those up to "
-        f"{extent.supports[told - 1]:.4g} m; no other one is among the figures"
+        f"{extent.supports[told - 1]:.4g} m; no other one is among the values"
     ]
 
 
 def of_bands(names: Iterable[str]) -> list[str]:
-    """A line for each figure, by name, that is of frequencies for which the model is not made."""
+    """A line for each value, by name, that is of frequencies for which the model is not made."""
     bands = {name: band for name in names if (band := band_of(name))}
     return [
         f"warning: {described(name)[0]}: above {BAND:g} Hz a simulated force is one of lumped masses on contact.k, "

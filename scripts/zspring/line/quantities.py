@@ -1,4 +1,4 @@
-"""The figures of a contact force along a line: those that every evaluation has, and free ones by their names.
+"""The values of a contact force along a line: those that every evaluation has, and free ones by their names.
 
 standard_deviation_20_50 is the standard deviation of 20 to 50 Hz, uplift_at_132.5 the largest uplift of the contact
 wire 132.5 m along the line.
@@ -31,11 +31,11 @@ FREE = "standard_deviation_LOW_HIGH (Hz) or uplift_at_X (m)"
 _NUMBER = r"(\d+(?:\.\d+)?)"
 _BAND, _POINT = re.compile(rf"standard_deviation_{_NUMBER}_{_NUMBER}"), re.compile(rf"uplift_at_{_NUMBER}")
 
-Statistics = dict[str, float]  # by name, in the units of the figures; NaN where the series does not tell
+Statistics = dict[str, float]  # by name, in the units of the values; NaN where the series does not tell
 
 
 def is_figure(name: str) -> bool:
-    """Whether a figure has that name."""
+    """Whether a value has that name."""
     return name in FIGURES or band_of(name) is not None or point_of(name) is not None
 
 
@@ -64,7 +64,7 @@ def point_of(name: str) -> float | None:
 
 
 def points_of(names: Iterable[str]) -> tuple[float, ...]:
-    """Positions in m of the points among figures."""
+    """Positions in m of the points among values."""
     return tuple(point for name in names if (point := point_of(name)) is not None)
 
 

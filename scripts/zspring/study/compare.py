@@ -38,7 +38,7 @@ class Runner:
 
 @dataclass(frozen=True)
 class Difference:
-    """What a figure's mean is more by the first of the compared than by another one, over lines that both ran along.
+    """What a value's mean is more by the first of the compared than by another one, over lines that both ran along.
 
     condition   values of `conditions`
     name        of the other one
@@ -77,7 +77,7 @@ def runners(cases: Sequence[Case], settings: StudySettings) -> list[Runner]:
 def differences(
     settings: StudySettings, quantity: CoupledQuantity, cases: Sequence[Case], rows: Rows
 ) -> list[Difference]:
-    """Of all figures, by condition, pantograph and name. Cases count that have values by both.
+    """Of all values, by condition, pantograph and name. Cases count that have values by both.
 
     Lines count once: what else varies is averaged over along each.
     """
@@ -125,7 +125,7 @@ def _interval(pairs: np.ndarray) -> tuple[float, float, float, int]:
 def write_differences(
     path: Path, head: Mapping[str, str], settings: StudySettings, found: Sequence[Difference]
 ) -> None:
-    """One row for each condition, pantograph, figure and name."""
+    """One row for each condition, pantograph, value and name."""
     variables, told = settings.variables, conditions(settings)
     rows = [
         [
@@ -141,14 +141,14 @@ def write_differences(
         ]
         for each in found
     ]
-    columns = [*(column_of(variables[name]) for name in told), "pantograph", "figure", "unit", COMPARED]
+    columns = [*(column_of(variables[name]) for name in told), "pantograph", "value", "unit", COMPARED]
     columns += ["mean of the first", "difference", "half width", "lines"]
     head = {**head, "first": next(iter(settings.compared)), "half width": f"of the {100 * SHARE:g} % interval"}
     write_table(path, head, columns, rows, digits=6)
 
 
 def difference_table(settings: StudySettings, found: Sequence[Difference]) -> list[str]:
-    """Lines with the differences of the first figure, a column for each condition; * where the interval excludes 0."""
+    """Lines with the differences of the first value, a column for each condition; * where the interval excludes 0."""
     figure, first = found[0].figure, next(iter(settings.compared))
     shown = [each for each in found if each.figure == figure]
     label, unit, _ = described(figure)
@@ -168,7 +168,7 @@ def difference_table(settings: StudySettings, found: Sequence[Difference]) -> li
     clear, intervals = sum(each.is_clear for each in found), sum(each.half_width > 0 for each in found)
     if intervals:
         lines.append(
-            f"*: on one side of 0, as {clear} of {intervals} intervals of all figures are; without any difference "
+            f"*: on one side of 0, as {clear} of {intervals} intervals of all values are; without any difference "
             f"about {(1 - SHARE) * intervals:.0f} would be"
         )
     return lines

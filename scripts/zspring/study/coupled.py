@@ -62,7 +62,7 @@ class CoupledQuantity:
     irregularity: Irregularity | None = None
 
     def column(self, figure: str, i: int) -> str:
-        """The column of a figure of pantograph i, counted from 0."""
+        """The column of a value of pantograph i, counted from 0."""
         return self._column(figure, described(figure)[1], i)
 
     @property

@@ -129,7 +129,7 @@ class _CoupleOwn(Table):
 
     line: Annotated[str, set_name(LINES)] = ""
     spans: Spans | None = None
-    figures: Figures = tuple(FIGURES)
+    values: Figures = tuple(FIGURES)
 
 
 # And what can vary as well: here numbers and texts, which the variables of these names check.

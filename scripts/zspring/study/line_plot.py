@@ -24,7 +24,7 @@ PERCENTILES = (5, 50, 95)
 
 
 def distribution_figure(quantity: CoupledQuantity, compared: Mapping[str, Rows], title: str) -> Figure:
-    """Of each figure that varies, the share of cases up to a value, of each of the compared and each pantograph."""
+    """Of each value that varies, the share of cases up to a value, of each of the compared and each pantograph."""
     every = [rows for rows in compared.values() if rows]
     names = [
         name
@@ -66,7 +66,7 @@ def _varies(numbers: np.ndarray) -> bool:
 def sweep_figure(
     settings: StudySettings, quantity: CoupledQuantity, cases: Sequence[Case], rows: Rows, title: str
 ) -> Figure:
-    """Median and 5 to 95 % of the cases of each condition, by figure and pantograph, of each of the compared."""
+    """Median and 5 to 95 % of the cases of each condition, by value and pantograph, of each of the compared."""
     places = _Places(settings, cases)
     figure, panels = _panels(quantity.figures, runners(cases, settings))
     names = list(settings.compared) or [""]
@@ -90,7 +90,7 @@ def sweep_figure(
 def difference_figure(
     settings: StudySettings, cases: Sequence[Case], found: Sequence[Difference], title: str
 ) -> Figure:
-    """Mean differences of the first of the compared from the others, with intervals, by figure and pantograph."""
+    """Mean differences of the first of the compared from the others, with intervals, by value and pantograph."""
     places = _Places(settings, cases)
     figure, panels = _panels(list(dict.fromkeys(d.figure for d in found)), list(dict.fromkeys(d.runner for d in found)))
     first, *names = settings.compared
@@ -109,7 +109,7 @@ def difference_figure(
 
 
 def correlation_figure(found: Mapping[str, Sequence[Correlation]], parameters: Sequence[str], title: str) -> Figure:
-    """Rank correlations with their intervals: a panel for each figure, a bar for each parameter."""
+    """Rank correlations with their intervals: a panel for each value, a bar for each parameter."""
     columns = list(dict.fromkeys(each.column for correlations in found.values() for each in correlations))
     count = min(COLUMNS, len(columns))
     figure = new_figure(3.8 * count, 0.9 + (0.9 + 0.3 * len(parameters)) * -(-len(columns) // count))
@@ -167,7 +167,7 @@ Panels = dict[tuple[str, Runner], Axes]
 
 
 def _panels(figures: Sequence[str], who: Sequence[Runner]) -> tuple[Figure, Panels]:
-    """A row for each figure, a column for each pantograph."""
+    """A row for each value, a column for each pantograph."""
     figure = new_figure(max(6.0, 1.2 + 3.3 * len(who)), 1.1 + 1.9 * len(figures))
     grid = figure.subplots(len(figures), len(who), sharex=True, sharey="row", squeeze=False)
     return figure, {(name, runner): grid[r, c] for r, name in enumerate(figures) for c, runner in enumerate(who)}

@@ -1,4 +1,4 @@
-"""How figures go with the parameters of a sampled study: rank correlations with their intervals."""
+"""How values go with the parameters of a sampled study: rank correlations with their intervals."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ QUANTILE = 1.959964  # of the normal distribution, of a 95 % interval
 
 @dataclass(frozen=True)
 class Correlation:
-    """Spearman's rank correlation of one figure with each parameter, and the ends of its 95 % interval.
+    """Spearman's rank correlation of one value with each parameter, and the ends of its 95 % interval.
 
-    samples             that have the figure
+    samples             that have the value
     value, low, high    (parameters,)
     """
 
@@ -44,7 +44,7 @@ def correlations(
 ) -> list[Correlation]:
     """Of each column that varies, over the cases that have it.
 
-    An item of a list is one sample, with the mean of the figure over its lines; one that lacks a line does not count.
+    An item of a list is one sample, with the mean of the value over its lines; one that lacks a line does not count.
     Intervals by Fisher's transform with the variance of Bonett, Wright, Psychometrika 65 (2000).
     """
     from scipy.stats import rankdata  # slow to load
@@ -76,7 +76,7 @@ def correlations(
 
 
 def correlation_table(parameters: Sequence[str], found: Sequence[Correlation]) -> list[str]:
-    """Lines by figure and parameter."""
+    """Lines by value and parameter."""
     rows = [["rank correlation", *parameters]]
     for each in found:
         rows.append([each.column, *(f"{v:+.2f} ({a:+.2f} .. {b:+.2f})" for v, a, b in _each(each))])
@@ -95,7 +95,7 @@ def correlation_doubts(found: Sequence[Correlation]) -> list[str]:
 def write_correlations(
     path: Path, head: Mapping[str, str], parameters: Sequence[str], found: Mapping[str, Sequence[Correlation]]
 ) -> None:
-    """One row for each of the compared, figure and parameter."""
+    """One row for each of the compared, value and parameter."""
     rows = [
         [name, each.column, parameter, *triple, each.samples]
         for name, correlations in found.items()

@@ -121,8 +121,8 @@ def read_study(path: Path, fmu: Fmu, catenary: Fmu | None = None) -> StudySettin
         line, irregularity, told = None, None, {*common, *vary}
         if file.couple and catenary:
             line, of_line = _line(file.couple.line, catenary, vary)
-            if len(points_of(file.couple.figures)) > (most := most_points(catenary)):
-                raise ZSpringError(f"[couple] figures: uplift_at is told of {most} points at most")
+            if len(points_of(file.couple.values)) > (most := most_points(catenary)):
+                raise ZSpringError(f"[couple] values: uplift_at is told of {most} points at most")
             of_run = _tabled("couple", file.couple, run_keys(), variables, vary)
             told |= of_run.keys()
             _check_force(told)
@@ -149,7 +149,7 @@ def read_study(path: Path, fmu: Fmu, catenary: Fmu | None = None) -> StudySettin
             variables = Variables([*variables, own_variable(LINE_NUMBER, "Integer", min="1")])
         if file.couple:
             most = _most(f"{COUPLE}pantographs", vary, [whole, *compared.values()])
-            quantities += (CoupledQuantity(file.couple.figures, most, file.couple.spans, line, irregularity),)
+            quantities += (CoupledQuantity(file.couple.values, most, file.couple.spans, line, irregularity),)
         if compared:
             variables = Variables([*variables, choice_variable(COMPARED, compared)])
         lines = file.irregularity.lines if file.irregularity else 0
