@@ -32,7 +32,7 @@ try {
     tables: Array.from(document.querySelectorAll("table"), (table) =>
       Array.from(table.rows, (row) => Array.from(row.cells, (cell) => cell.textContent.trim())),
     ),
-    links: Array.from(document.links, (link) => link.textContent.trim()),
+    links: Array.from(document.querySelectorAll("[role=main] a"), (link) => link.textContent.trim()),
     tooWide: document.documentElement.scrollWidth > window.innerWidth,
   }));
   console.log(JSON.stringify({ errors, requests, ...found }));
