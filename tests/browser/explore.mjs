@@ -59,16 +59,23 @@ try {
   await measured();
   told.friction = await page.inputValue('[id="value-zspring.Mf"]');
   told.moved = await save("#frf-csv");
-  told.address = await page.evaluate(() => location.hash);
   told.command = await page.inputValue("#command");
+  await page.focus("#frf-plot");
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowUp");
+  told.keys = [await page.inputValue("#point-amplitude"), await page.inputValue("#point-frequency")];
+  await write("#point-frequency", "0.5");
+  await page.keyboard.press("Tab");
+  await state("point-text", "2 m/s² at 0.5 Hz");
+  told.stroke = await text("#point-text");
 
   await drop("own.ssv", given.ssv);
   await measured();
   told.dropped = await page.inputValue('[id="value-m1"]');
   told.written = await save("#save");
   await drop("measured.csv", given.csv);
-  await page.waitForTimeout(300);
-  told.afterCsv = await page.isVisible("#message");
+  await measured();
+  told.afterCsv = [await page.isVisible("#message"), await page.inputValue("#amplitudes"), await text("#unmeasure")];
   await drop("broken.ssv", given.broken);
   await page.waitForSelector("#message:not([hidden])");
   told.refusal = await text("#message");
@@ -77,25 +84,54 @@ try {
   await state("message", "m1");
   told.outOfBounds = await text("#message");
 
+  const finished = (id) => until(([name]) => document.getElementById(name).getAttribute("aria-busy") === "false", id);
   await page.click("#reset");
-  await page.click("#tab-line");
+  await drop("own line.ssv", given.line);
+  await finished("line");
+  told.ownLine = [await page.inputValue("#line-set"), await page.inputValue("#command")];
   await page.selectOption("#line-set", "en-50318-2002");
   await write("#speed", "200");
-  await page.click("#run");
-  await until(() => document.querySelectorAll("#statistics td").length > 0);
+  await page.keyboard.press("Tab");
+  told.busy = await page.getAttribute("#line", "aria-busy"); // what is shown is not at 200 km/h
+  await finished("line");
   told.statistics = await rows("#statistics");
   told.frames = Number(await page.getAttribute("#place", "max")) + 1;
   told.line = await save("#line-csv");
   await page.click("#sweep");
-  await state("line-state", "sweep: 33 of 33");
+  await state("sweep-state", "sweep: 33 of 33");
   told.sweep = await save("#sweep-csv");
+  await page.click("#pin");
+  await write("#last-span", "9");
+  await page.keyboard.press("Tab");
+  await finished("line");
+  told.doubt = await text("#line-state");
+  told.swept = [await page.getAttribute("#sweep-result", "aria-busy"), await text("#sweep-state")];
+  told.pinned = (await rows("#statistics")).at(-1);
+  told.address = await page.evaluate(() => location.hash);
 
   await page.click("#tab-static");
-  await until(() => document.querySelectorAll("#stiffness td").length > 0);
+  await finished("static");
   told.stiffness = await rows("#stiffness");
   await page.click("#tab-slip");
-  await state("slip-state", "27 of 27");
+  await finished("slip");
   told.slip = await save("#slip-csv");
+  told.onsets = await page.$$eval("#onsets tr", (found) => found.length);
+  told.contrast = await page.evaluate(() => {
+    const numbers = (color) => color.match(/[\d.]+/g).map(Number);
+    const light = (color) => numbers(color).slice(0, 3).map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4)).reduce((sum, c, i) => sum + [0.2126, 0.7152, 0.0722][i] * c, 0);
+    const behind = (e) => (!e ? "rgb(255, 255, 255)" : (numbers(getComputedStyle(e).backgroundColor)[3] ?? 1) > 0 ? getComputedStyle(e).backgroundColor : behind(e.parentElement));
+    const texts = Array.from(document.querySelectorAll("body *")).filter((e) => e.checkVisibility() && !e.closest(".stale") && Array.from(e.childNodes).some((n) => n.nodeType === 3 && n.textContent.trim()));
+    return texts.map((e) => {
+      const [a, b] = [light(getComputedStyle(e).color), light(behind(e))].sort((x, y) => y - x);
+      return [(a + 0.05) / (b + 0.05), e.outerHTML.slice(0, 80)];
+    }).sort((x, y) => x[0] - y[0])[0];
+  });
+
+  await page.goto("about:blank");
+  await page.goto(`${url}${told.address}`);
+  await until(() => document.documentElement.dataset.ready === "true");
+  await finished("line");
+  told.again = [await page.inputValue("#speed"), (await rows("#statistics"))[1], await page.evaluate(() => location.hash)];
 
   await page.setViewportSize({ width: 390, height: 800 });
   await page.click("#tab-frf");

@@ -12,7 +12,8 @@ const { sweep } = await load("bench");
 const { LineRun } = await load("line");
 const { repeatsAfter, meanResponse } = await load("steady");
 const { lowPass, statistics } = await load("filter");
-const { checked, readMeasured, readSsv, writeSsv } = await load("files");
+const { checked, readSsv, writeSsv } = await load("files");
+const { decoded, readMeasured } = await load("measured");
 const { staticLoop } = await load("static");
 const { raised } = await load("slip");
 
@@ -61,15 +62,17 @@ const jobs = {
     return { values, written: writeSsv(values[0], description, "again") };
   },
 
-  /** Of each CSV text its curves, or the refusal. */
+  /** Of each CSV file, as base64, its curves, or the refusal. */
   measured: () =>
-    given.texts.map((text) => {
+    given.files.map((bytes) => {
       try {
-        return readMeasured(text);
+        return readMeasured(decoded(Buffer.from(bytes, "base64")));
       } catch (error) {
         return error.message;
       }
     }),
+
+  colors: async () => (await load("plot")).COLORS,
 
   /** Refusals of values by name. */
   values() {

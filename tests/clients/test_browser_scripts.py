@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import subprocess
 from xml.etree import ElementTree
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 import node_jobs
+from zspring.bench.measured import read_csv
 from zspring.bench.steady import mean_response, repeats_after
 from zspring.errors import ZSpringError
 from zspring.explore import bundle
@@ -123,7 +125,7 @@ REFUSED = {
 def test_parameter_sets_are_read_as_python_reads_them(fmus, tmp_path):
     paths = packaged_sets()
     texts = [paths["dsa-380-zspring"].read_text("utf-8"), *(path.read_text("utf-8") for path in paths.values())]
-    texts += [MINE.format(REAL.format("zspring.L1", 80, "mm")), *REFUSED]
+    texts += [MINE.format(REAL.format("zspring.L1", 80, "mm").replace("Real", "Float64")), *REFUSED]
     told = node_jobs.answer("ssv", fmus, texts=texts)
     written = tmp_path / "written.ssv"
     written.write_text(told["written"], "utf-8")
@@ -138,22 +140,89 @@ def test_parameter_sets_are_read_as_python_reads_them(fmus, tmp_path):
     assert told["values"][2 + len(paths) :] == list(REFUSED.values())
 
 
-def test_measured_responses_are_read_or_refused_in_a_line(fmus):
+def measured(fmus, texts: list[str | bytes]) -> list:
+    """What the page's reader makes of these files."""
+    files = [base64.b64encode(each if isinstance(each, bytes) else each.encode()).decode() for each in texts]
+    return node_jobs.answer("measured", fmus, files=files)
+
+
+def scattered(steady: int) -> str:
+    """Two levels of displacement (0), velocity (1) or acceleration (2), with the scatter of a bench."""
+    rng, lines = np.random.default_rng(2), ["frequency [Hz],amplitude [mm],magnitude [m/N],phase [deg]"]
+    for level in 2.0, 5.0:
+        for frequency in np.arange(2, 9, 0.5):
+            motion = 1e3 * level / (2 * np.pi * frequency) ** steady
+            lines.append(f"{frequency},{motion * rng.uniform(0.98, 1.02):.5g},{2e-4 / frequency:.4g},-30")
+    return "\n".join(lines)
+
+
+RECORDINGS = """# of zspring recordings
+frequency [Hz],amplitude [m/s2],level,magnitude [m/N],magnitude_error [m/N],phase [deg],phase_error [deg],status
+3,0.98,1 m/s2,5e-5,1e-7,-20,0.1,settled
+4,1.03,1 m/s2,6e-5,1e-7,-20,0.1,settled
+3,4.1,4 m/s2,7e-5,1e-7,-20,0.1,settled
+"""
+SEMICOLONS = "Frequency;Amplitude;Magnitude;Phase\nHz;m/s²;N/mm;deg\n5,5;1,01;2,5;10\n6,5;1,01;3,5;11\n"
+READ = {
+    "as frf writes it": "frequency [Hz],amplitude [m/s2],H_re [m/N],H_im [m/N],status\n3,0.5,3e-5,4e-5,settled\n"
+    "4,0.5,,,left out: stroke\n5,0.5,3e-5,1e-5,settled\n3,1,0,1e-5,settled\n5,1,0,2e-5,settled\n",
+    "as recordings write it": RECORDINGS,
+    "semicolons, a line of units": SEMICOLONS,
+    "Windows-1252": SEMICOLONS.encode("cp1252"),
+    "UTF-16": SEMICOLONS.encode("utf-16"),
+    "displacements": scattered(0),
+    "velocities": scattered(1),
+    "accelerations": scattered(2),
+    **{
+        unit: f"frequency [rad/s],amplitude [g],magnitude [{unit}],phase [deg]\n20,0.1,2,1\n30,0.1,3,1\n"
+        for unit in ("mm/N", "mm/s/N", "g/N", "N.s/m", "kN/m", "1/kg", "kg", "(m/s^2)/N")
+    },
+}
+
+
+def test_measured_responses_are_read_as_python_reads_them(fmus, tmp_path):
+    """In the same levels, each at the same frequencies with the same |H|."""
+    for (name, content), curves in zip(READ.items(), measured(fmus, list(READ.values()))):
+        path = tmp_path / "measured.csv"
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        expected = read_csv(path, None)
+        assert isinstance(curves, list) and len(curves) == len(expected), (name, curves)
+        for curve, own in zip(curves, expected):
+            np.testing.assert_allclose(curve["x"], own.frequency, rtol=1e-12, err_msg=name)
+            np.testing.assert_allclose(curve["y"], np.abs(own.H), rtol=1e-12, err_msg=name)
+            if curve["acceleration"] is not None:
+                assert curve["acceleration"] == pytest.approx(np.median(own.acceleration), rel=0.03)
+        if name.startswith(("as", "semicolons", "acc", "UTF")):
+            assert all(curve["acceleration"] for curve in curves), name
+
+
+def test_broken_measured_responses_are_refused_in_a_line(fmus):
     head = "# a remark\nfrequency [Hz],amplitude [m/s2],"
     texts = {
-        f"{head}H_re [m/N],H_im [m/N],status\n3,0.5,3e-5,4e-5,settled\n4,0.5,,,left out\n3,1,0,1e-5,settled\n": [
-            {"label": "0.5 m/s2", "x": [3], "y": [pytest.approx(5e-5)]},
-            {"label": "1 m/s2", "x": [3], "y": [pytest.approx(1e-5)]},
-        ],
-        "frequency [Hz],magnitude [mm/N]\r\n5,0.2\r\n": [{"label": "measured", "x": [5], "y": [pytest.approx(2e-4)]}],
         "": "has no table",
-        "frequency [rad/s],magnitude [m/N]\n1,1\n": "column frequency: unit [rad/s]: must be Hz",
+        "frequency [V],magnitude [m/N]\n1,1\n": "column frequency: unit [V]: must be Hz, kHz, rad/s or rpm",
         "frequency [Hz]\n1\n": "has no column magnitude",
-        f"{head}real [N/m]\n1,1,1\n": "column real: unit [N/m]: the page shows receptance, in m/N or mm/N",
+        f"{head}real [m/V]\n1,1,1\n": "has no column imaginary",
+        f"{head}magnitude [m/V]\n1,1,1\n": "column magnitude: unit [m/V]: must be that of motion over force or its "
+        "inverse, as m/N",
+        f"{head}real [m/N],imaginary [mm/N]\n1,1,1,1\n": "column imaginary: unit [mm/N]: must be m/N",
         f"{head}real [m/N],imaginary [m/N]\n1,1,1,soft\n": 'line 3, column imaginary: "soft" is no finite number',
+        f"{head}magnitude [m/N]\n1,1,-2\n": "line 3, column magnitude: -2: must be more than 0",
+        "frequency [Hz],magnitude [m/N]\n5,0,0002\n": "line 2: has 3 cells, the head has 2",
+        "frequency [Hz],frequency [Hz]\n5,5\n": "has two columns frequency",
         f"{head}magnitude [m/N]\n": "has no row with a measured point",
+        "frequency [Hz],amplitude,magnitude [m/N]\n5,1,1e-4\n": "column amplitude: unit []: must be that of a motion, "
+        "as m/s2 or mm",
     }
-    assert node_jobs.answer("measured", fmus, texts=list(texts)) == list(texts.values())
+    assert measured(fmus, list(texts)) == list(texts.values())
+
+
+def test_curves_stand_out_from_white(fmus):
+    """By a contrast of 3 at least, as WCAG 2 asks for graphics."""
+    for color in node_jobs.answer("colors", fmus):
+        channels = np.array([int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+        linear = np.where(channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4)
+        assert 1.05 / (linear @ [0.2126, 0.7152, 0.0722] + 0.05) >= 3, color
 
 
 def test_a_value_is_refused_in_a_line(fmus):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import subprocess
 import threading
 from pathlib import Path
@@ -27,6 +28,10 @@ from zspring.parameter_sets import LINES, find_set, read_set
 MEASURED = "frequency [Hz],amplitude [m/s2],magnitude [m/N]\n5,1,2e-4\n6,1,3e-4\n"
 OWN = """<ParameterSet xmlns="http://ssp-standard.org/SSP1/SystemStructureParameterValues" version="1.0" name="x">
 <Parameters><Parameter name="m1"><Real value="8" unit="kg"/></Parameter></Parameters></ParameterSet>"""
+OWN_LINE = OWN.replace('"m1"><Real value="8" unit="kg"', '"contact_wire.tension"><Real value="27" unit="kN"').replace(
+    "</ParameterSet>",
+    '<Units><Unit name="kN"><BaseUnit kg="1" m="1" s="-2" factor="1000"/></Unit></Units></ParameterSet>',
+)
 
 
 @pytest.fixture(scope="module", params=["chromium", "firefox"])
@@ -39,7 +44,7 @@ def told(request, tmp_path_factory) -> dict:
     done = node(
         [str(script), path.as_uri(), str(folder), *own],
         return_completed_process=True,
-        input=json.dumps({"ssv": OWN, "csv": MEASURED, "broken": "<ParameterSet>"}),
+        input=json.dumps({"ssv": OWN, "csv": MEASURED, "line": OWN_LINE, "broken": "<ParameterSet>"}),
         capture_output=True,
         text=True,
         timeout=400,
@@ -78,7 +83,7 @@ def test_the_curves_are_right_at_five_points_before_and_after_a_slider_moved(tol
     """Swept as the page does, upward every 0.125 Hz."""
     if Mf is None:
         Mf = float(told["friction"])
-        assert Mf > 0.32 and f"zspring.Mf={Mf:g}" in told["address"] and f"--set zspring.Mf={Mf:g}" in told["command"]
+        assert Mf > 0.32 and f"--set zspring.Mf={Mf:g}" in told["command"]
     found, frequencies = responses(told[saved]), tuple(2 + i / 8 for i in range(97))
     assert len(found) == 6 * 97
     settings = FrfSettings((1.0,), frequencies, {"solver.step": 5e-4, "zspring.Mf": Mf})
@@ -92,7 +97,7 @@ def test_the_curves_are_right_at_five_points_before_and_after_a_slider_moved(tol
 
 
 def test_files_arrive_and_broken_ones_get_a_line(told, tmp_path):
-    assert told["dropped"] == "8" and told["afterCsv"] is False
+    assert told["dropped"] == "8" and told["afterCsv"] == [False, "1", "Remove measured.csv"]
     path = tmp_path / "written.ssv"
     path.write_text(told["written"], "utf-8")
     with Fmu() as fmu:
@@ -100,6 +105,7 @@ def test_files_arrive_and_broken_ones_get_a_line(told, tmp_path):
     assert values["m1"] == 8 and values["m2"] == 6 and values["zspring.Mf"] == 0.3
     assert told["refusal"] == "broken.ssv: is no well-formed XML"
     assert told["outOfBounds"] == "m1 = -3 kg: must be at least 0.001"
+    assert told["ownLine"][0] == "own line.ssv" and '--line "own line.ssv" --speed 250' in told["ownLine"][1]
 
 
 def test_the_run_under_the_line(told):
@@ -123,6 +129,26 @@ def test_the_run_under_the_line(told):
     assert float(speeds[200]["standard deviation as set [N]"]) == pytest.approx(inside.std(), abs=1e-6)
 
 
+def test_what_is_of_other_settings_or_not_to_be_relied_on_is_told(told):
+    assert told["busy"] == "true"
+    assert re.match(r"Do not rely on the statistics: from \d+ m on the far end reflects", told["doubt"])
+    assert told["swept"] == ["true", "this sweep is of other settings"]
+    assert told["pinned"][0].startswith("pinned, its spans: start values; en-50318-2002, 200 km/h")
+    assert told["pinned"][1:] == told["statistics"][1][1:]
+    doubted = {row["speed [km/h]"] for row in table(told["sweep"]) if row["doubts"]}
+    assert doubted == {"160"}  # the waves are back before the pantograph is through
+    assert told["stroke"] == (
+        "2 m/s² at 0.5 Hz is a displacement of 203 mm: must be at most 100 mm; what is below is another point"
+    )
+
+
+def test_the_address_brings_the_same_back(told):
+    assert told["address"].startswith("#page.view=line&") and "page.speed=200" in told["address"]
+    speed, statistics, address = told["again"]
+    assert speed == "200" and address == told["address"]
+    assert statistics[0] == "as set" and statistics != told["statistics"][1]  # of more spans
+
+
 def test_static_force_and_slip_map(told):
     stiffness = {float(a): float(k) for a, k in told["stiffness"][1:]}
     with Fmu() as fmu, fmu.instances() as (instance,):
@@ -136,6 +162,8 @@ def test_static_force_and_slip_map(told):
 
 def test_it_fits_a_phone_and_every_control_has_a_name(told):
     assert told["tooWide"] is False and told["unlabelled"] == []
+    assert told["keys"] == ["2", "5.125"] and told["onsets"] == 28
+    assert told["contrast"][0] > 4.5, told["contrast"]  # WCAG 2, AA
     assert "58 %" in told["point"] and told["synthetic"].startswith("Synthetic")
 
 

@@ -43,7 +43,7 @@ export class Controls {
     const { name, description, type, items, display } = variable;
     const set = (text, live) => {
       try {
-        const shown = type === "Real" && String(text).trim() !== "" ? Number(text) / display.factor : text;
+        const shown = type === "Real" && String(text).trim() !== "" ? Number((Number(text) / display.factor).toPrecision(15)) : text;
         this.set({ [name]: checked(variable, shown) }, live);
         input.setCustomValidity("");
       } catch (error) {

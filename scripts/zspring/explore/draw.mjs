@@ -11,8 +11,11 @@ function prepared(canvas) {
   return { c, width, height };
 }
 
-/** Head, rods and spring, frame; geometry {theta, L1, L2, d} and state {head, frame, alpha, beta} in m and rad. */
-export function drawLinkage(canvas, { theta, L1, L2, d }, { head, frame, alpha, beta }, sliding) {
+/**
+ * Head, rods and spring, frame; geometry {theta, L1, L2, d} and state {head, frame, alpha, beta} in m and rad, whose
+ * motion about the static state has been magnified.
+ */
+export function drawLinkage(canvas, { theta, L1, L2, d }, { head, frame, alpha, beta }, sliding, magnified) {
   const { c, width, height } = prepared(canvas);
   const gap = d * Math.tan(theta), top = frame + gap;
   const points = [
@@ -43,18 +46,22 @@ export function drawLinkage(canvas, { theta, L1, L2, d }, { head, frame, alpha, 
   }
   line([...zigzag, [bx, by]], "#c60", 1.5);
   [0, 3].forEach((i, joint) => {
-    c.fillStyle = sliding[joint] ? "#c00" : "#063";
+    c.fillStyle = sliding[joint] ? "#fff" : "#063";
+    c.strokeStyle = sliding[joint] ? "#c00" : "#063";
+    c.lineWidth = 3;
     c.beginPath();
     c.arc(x(points[i][0]), y(points[i][1]), 6, 0, 7);
     c.fill();
+    c.stroke();
   });
   c.fillStyle = "#222";
   c.textAlign = "left";
   c.fillText("head", 6, height - 6);
   c.textAlign = "center";
-  c.fillText("joint green: sticks, red: slides", width / 2, height - 6);
+  c.fillText("joint full: sticks, open: slides", width / 2, height - 6);
   c.textAlign = "right";
   c.fillText("frame", width - 6, height - 6);
+  if (magnified > 1) c.fillText(`motion × ${magnified}`, width - 6, 14);
 }
 
 /** Contact wire, messenger and droppers about a pantograph; heights drawn with their own scales, told on the picture. */

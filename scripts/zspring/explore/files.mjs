@@ -1,11 +1,9 @@
-// Parameters and measured frequency responses from and to files. Each refusal is one line.
+// Parameters from and to files, tables to files. Each refusal is one line.
 
 import { unitBases } from "./description.mjs";
 import { elements, parseXml } from "./xml.mjs";
 
-const TYPES = ["Real", "Integer", "Enumeration", "Boolean"];
-const CSV = /^#|^\s*$/;
-const RECEPTANCE = { "m/N": 1, "mm/N": 1e-3 };
+const TYPES = ["Real", "Float64", "Integer", "Enumeration", "Boolean"]; // Float64: of SSP 2
 
 /** A parameter's value from text or number, in its type; enumerations by their items' names. Throws Error. */
 export function checked(variable, given) {
@@ -87,47 +85,6 @@ ${units.join("\n")}
   </ssv:Units>
 </ssv:ParameterSet>
 `;
-}
-
-/** Curves {label, x: Hz, y: |H| in m/N} by amplitude of a measured FRF's CSV: receptance. Throws Error with the line. */
-export function readMeasured(text) {
-  const lines = text.replace(/^\uFEFF/, "").split(/\r?\n/).map((content, i) => ({ content, number: i + 1 }));
-  const [head, ...rows] = lines.filter(({ content }) => !CSV.test(content));
-  if (!head) throw new Error("has no table");
-  const columns = new Map();
-  head.content.split(",").forEach((title, place) => {
-    const [, name, unit = ""] = title.trim().match(/^(.*?)\s*(?:\[(.*)\])?$/);
-    columns.set(name.toLowerCase().replaceAll("_", " ").replace(/^h re$/, "real").replace(/^h im$|^imag$/, "imaginary"), { place, unit });
-  });
-  const column = (name) => {
-    if (!columns.has(name)) throw new Error(`has no column ${name}`);
-    return columns.get(name);
-  };
-  const frequency = column("frequency");
-  if (frequency.unit !== "Hz") throw new Error(`column frequency: unit [${frequency.unit}]: must be Hz`);
-  const parts = columns.has("real") ? ["real", "imaginary"] : ["magnitude"];
-  const factors = parts.map((part) => {
-    const { unit } = column(part);
-    if (!(unit in RECEPTANCE)) throw new Error(`column ${part}: unit [${unit}]: the page shows receptance, in m/N or mm/N`);
-    return RECEPTANCE[unit];
-  });
-  const amplitude = columns.get("amplitude"), status = columns.get("status"), curves = new Map();
-  for (const { content, number } of rows) {
-    const cells = content.split(",");
-    if (status && /^(left out|failed)/.test(cells[status.place] ?? "")) continue;
-    const numberAt = ({ place }, what) => {
-      const cell = (cells[place] ?? "").trim(), value = cell === "" ? NaN : Number(cell);
-      if (!Number.isFinite(value)) throw new Error(`line ${number}, column ${what}: "${cell}" is no finite number`);
-      return value;
-    };
-    const values = parts.map((part, i) => factors[i] * numberAt(column(part), part));
-    const level = amplitude ? `${(cells[amplitude.place] ?? "").trim()} ${amplitude.unit}` : "measured";
-    if (!curves.has(level)) curves.set(level, { label: level, x: [], y: [] });
-    curves.get(level).x.push(numberAt(frequency, "frequency"));
-    curves.get(level).y.push(Math.abs(values.length === 2 ? Math.hypot(...values) : values[0]));
-  }
-  if (!curves.size) throw new Error("has no row with a measured point");
-  return [...curves.values()];
 }
 
 /** Text of a CSV with lines of a head {key: value}, titles and rows. */

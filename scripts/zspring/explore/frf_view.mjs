@@ -1,55 +1,39 @@
-// Frequency response by amplitude between its linear bounds, and the point that was chosen.
+// Frequency response by amplitude between its linear bounds, beside a measured one.
 
-import { drawLinkage } from "./draw.mjs";
-import { COLORS, DASHES, Plot } from "./plot.mjs";
+import { COLORS, DASHES, pale, Plot } from "./plot.mjs";
+import { magnitude, PointView } from "./point_view.mjs";
+import { fill } from "./tables.mjs";
 
-const AMPLITUDES = [0.25, 0.5, 1, 2, 4, 8]; // m/s2, of the standard figure
 const LOW = 2, HIGH = 14; // Hz
 const GRIDS = { coarse: 0.5, fine: 0.125 }; // Hz
 const BOUNDS = { locked: "LinearLocked", free: "LinearFree" };
-const SLIDES = 0.95; // of Mf, as `zspring slip` counts
-const SLOWER = 12; // periods of the screen for one of the bench, at 5 Hz
+const MOST = 8, LARGEST = 20; // amplitudes, m/s2
 const at = (id) => document.getElementById(id);
-const magnitude = (point) => (point.H ? 1e3 * Math.hypot(...point.H) : NaN); // mm/N
-
 const grid = (step) => Array.from({ length: Math.round((HIGH - LOW) / step) + 1 }, (_, i) => LOW + i * step);
 
-/** Table rows from arrays of texts; the first one is the head. */
-export function fill(table, rows) {
-  const caption = table.caption;
-  table.replaceChildren(...(caption ? [caption] : []));
-  rows.forEach((row, i) => {
-    const line = table.insertRow();
-    for (const text of row) {
-      const cell = document.createElement(i ? "td" : "th");
-      cell.textContent = text;
-      if (!i) cell.scope = "col";
-      line.append(cell);
-    }
+/** Amplitudes from text, ascending. Throws Error. */
+export function amplitudesOf(text) {
+  const found = text.split(/[;,\s]+/).filter(Boolean).map((part) => {
+    const value = Number(part);
+    if (!(value > 0 && value <= LARGEST)) throw new Error(`amplitude ${part} m/s²: must be a number above 0, at most ${LARGEST}`);
+    return value;
   });
+  const apart = [...new Set(found)].sort((a, b) => a - b);
+  if (!apart.length || apart.length > MOST) throw new Error(`${apart.length} amplitudes: must be 1 to ${MOST}`);
+  return apart;
 }
 
 export class FrfView {
   constructor(context) {
-    Object.assign(this, { context, pinned: [], measured: [], points: new Map(), step: 0, version: 0, cycle: null });
-    const choose = (curve, i, chosen) => {
-      if (!curve.amplitude) return;
-      if (chosen) {
-        at("point-amplitude").value = curve.amplitude;
-        at("point-frequency").value = curve.x[i];
-        this.choose();
-      } else at("frf-state").textContent = `${curve.label}: ${curve.x[i]} Hz, ${curve.y[i].toPrecision(4)} mm/N; click for its motion`;
-    };
-    this.plot = new Plot(at("frf-plot"), { x: "frequency  [Hz]", y: "|H| = |Z/F|  [mm/N]", logY: true, onPoint: choose });
-    this.moments = new Plot(at("moments"), { x: "angle from the static one  [deg]", y: "friction moment  [N·m]" });
-    this.force = new Plot(at("force"), { x: "time  [ms]", y: "contact force  [N]" });
-    at("point-amplitude").onchange = at("point-frequency").onchange = () => this.choose();
+    Object.assign(this, { context, pinned: [], measured: [], points: new Map(), step: 0, version: 0 });
+    this.plot = new Plot(at("frf-plot"), {
+      x: "frequency  [Hz]", y: "|H| = |Z/F|  [mm/N]", logY: true,
+      onPoint: (curve, i) => this.point.set(curve.amplitude, curve.x[i]),
+      onKey: (key) => this.move(key),
+    });
+    this.point = new PointView(context, () => this.draw());
     at("frf-csv").onclick = () => this.save();
-    const move = (time) => {
-      if (at("animate").checked) this.drawLinkage(time / 1e3);
-      requestAnimationFrame(move);
-    };
-    requestAnimationFrame(move);
+    at("amplitudes").onchange = () => context.changed();
   }
 
   /** Measure the figure with the parameters as they are; while they move coarse, one figure after the other. */
@@ -66,131 +50,107 @@ export class FrfView {
   }
 
   async measure(live) {
-    const version = ++this.version, { pool } = this.context;
+    const version = ++this.version, { pool, tell, stale } = this.context;
     const parameters = this.context.parameters(), made = this.context.head();
-    this.measuring = true;
+    if (!live) stale("frf", true);
+    pool.drop("frf");
+    let amplitudes;
+    try {
+      amplitudes = amplitudesOf(at("amplitudes").value);
+    } catch (error) {
+      at("frf-state").textContent = "the curves are of other amplitudes";
+      return tell(error.message);
+    }
     const step = live ? GRIDS.coarse : GRIDS.fine, frequencies = grid(step);
-    if (!live) pool.drop("frf");
     at("frf-state").textContent = live ? "coarse while parameters move" : "measuring";
     const tasks = [
-      ...AMPLITUDES.map((amplitude) => [amplitude, parameters]),
+      ...amplitudes.map((amplitude) => [amplitude, parameters]),
       ...Object.entries(BOUNDS).map(([name, suspension]) => [name, { ...parameters, suspension }]),
     ].filter(([key]) => typeof key === "number" || parameters.suspension !== "Linear");
-    if (live) at("point-text").textContent = "the point is measured once the parameters rest";
-    else this.choose();
-    const points = new Map();
+    this.point.update(live);
     try {
-      await Promise.all(
-        tasks.map(async ([key, own]) => {
-          const amplitude = typeof key === "number" ? key : 1;
-          const found = await pool.run("frf", "sweep", { parameters: own, amplitude, frequencies });
-          if (version !== this.version) return;
-          points.set(key, found);
-          if (points.size === tasks.length) {
-            Object.assign(this, { points, step, made, measuring: false });
-            this.draw();
-          }
-        }),
+      const found = await Promise.all(
+        tasks.map(([key, own]) => pool.run("frf", "sweep", { parameters: own, amplitude: typeof key === "number" ? key : 1, frequencies })),
       );
+      if (version !== this.version) return;
+      Object.assign(this, { points: new Map(tasks.map(([key], i) => [key, found[i]])), step, made });
+      stale("frf", false);
+      this.draw();
+      at("frf-state").textContent = this.told();
     } catch (error) {
       if (version !== this.version) return;
-      this.context.tell(error.message);
+      tell(error.message);
+      stale("frf", true);
       at("frf-state").textContent = "the curves are of other parameters";
     }
   }
 
+  /** How the curves were measured, and what not to believe of them. */
+  told() {
+    const all = [...this.points.values()].flat(), count = (wanted) => all.filter(({ status }) => wanted.test(status)).length;
+    const trouble = [[/^not/, "not settled (crossed out)"], [/^period/, "repeating only after several periods (crossed out)"], [/^failed/, "failed (left out)"]];
+    const found = trouble.map(([wanted, what]) => [count(wanted), what]).filter(([n]) => n).map(([n, what]) => `; ${n} ${what}`);
+    const beyond = [...this.points].filter(([key, points]) => typeof key === "number" && points.length < grid(this.step).length);
+    const stroke = beyond.length ? `; from ${beyond.map(([key]) => `${key}`).join(", ")} m/s² low frequencies left out: stroke over 100 mm` : "";
+    return `every ${this.step} Hz${found.join("")}${stroke}`;
+  }
+
+  /** By the keyboard along the curves: frequency, or the next amplitude. */
+  move(key) {
+    const keys = [...this.points.keys()].filter((one) => typeof one === "number"), { amplitude, frequency } = this.point.asked;
+    const place = Math.max(0, keys.findIndex((one) => one >= amplitude));
+    const by = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [-1, 0], ArrowUp: [1, 0] }[key];
+    const next = keys[Math.min(keys.length - 1, Math.max(0, place + by[0]))] ?? amplitude;
+    this.point.set(by[0] ? next : amplitude, Math.min(HIGH, Math.max(LOW, frequency + by[1] * GRIDS.fine)));
+  }
+
   curves() {
-    const made = [];
-    for (const amplitude of AMPLITUDES) {
-      const found = this.points.get(amplitude);
-      if (found)
-        made.push({ x: found.map((p) => p.frequency), y: found.map(magnitude), color: COLORS[AMPLITUDES.indexOf(amplitude)], label: `${amplitude} m/s²`, amplitude });
-    }
-    for (const [name, dash] of [["locked", DASHES.dashed], ["free", DASHES.dotted]]) {
-      const found = this.points.get(name);
-      if (found) made.push({ x: found.map((p) => p.frequency), y: found.map(magnitude), color: "#000", dash, label: `linear, rods ${name}`, passive: true });
+    const made = [], amplitudes = [...this.points.keys()].filter((key) => typeof key === "number");
+    for (const [key, found] of this.points) {
+      const bad = found.flatMap((p, i) => (p.status === "settled" ? [] : [i]));
+      const curve = { x: found.map((p) => p.frequency), y: found.map(magnitude), bad };
+      if (typeof key === "number") made.push({ ...curve, color: COLORS[amplitudes.indexOf(key)], label: `${key} m/s²`, amplitude: key });
+      else made.push({ ...curve, color: "#000", dash: key === "locked" ? DASHES.dashed : DASHES.dotted, label: `rods ${key}`, passive: true });
     }
     return made;
   }
 
   draw() {
-    const pinned = this.pinned.map((curve) => ({ ...curve, color: `${curve.color}55`, width: 3, label: "", passive: true }));
-    const measured = this.measured.map(({ label, x, y }) => ({ x, y: y.map((value) => 1e3 * value), dots: true, color: "#c00", label: `measured ${label}`, passive: true }));
-    this.plot.show([...pinned, ...this.curves(), ...measured], { x: [LOW, HIGH] }, this.mark);
-    const unsettled = [...this.points.values()].flat().filter((p) => p.status !== "settled").length;
-    if (!this.measuring) at("frf-state").textContent = `every ${this.step} Hz` + (unsettled ? `; ${unsettled} points repeat only after several periods, did not settle or failed` : "");
-    const rows = [["amplitude", "resonances: Hz, mm/N"]];
+    const amplitudes = [...this.points.keys()];
+    const measured = this.measured.map(({ label, acceleration, x, y }, i) => {
+      const place = amplitudes.indexOf(acceleration);
+      return { x, y: y.map((value) => 1e3 * value), dots: place < 0 ? "cross" : "ring", color: COLORS[place < 0 ? i % COLORS.length : place], label: `measured ${label}`, passive: true };
+    });
+    const all = this.measured.flatMap(({ x }) => x).concat(LOW, HIGH);
+    this.plot.show([...this.pinned, ...this.curves(), ...measured], { x: [Math.min(...all), Math.max(...all)] }, this.point.mark);
+    const rows = [["amplitude", "Hz, mm/N"]];
     for (const [key, points] of this.points) {
       const peaks = points.slice(1, -1).filter((p, i) => magnitude(p) > magnitude(points[i]) && magnitude(p) > magnitude(points[i + 2]));
-      const told = peaks.map((p) => `${p.frequency} ± ${this.step}, ${magnitude(p).toPrecision(2)}`);
+      const told = peaks.map((p) => `${p.frequency} Hz ${magnitude(p).toPrecision(3)}${p.status === "settled" ? "" : ` (${p.status})`}`);
       rows.push([typeof key === "number" ? `${key} m/s²` : `rods ${key}`, told.join(";  ")]);
     }
+    at("resonances").caption.textContent = `Resonances: points above both neighbours; the peak is within ${this.step} Hz of each, and higher`;
     fill(at("resonances"), rows);
   }
 
-  pin() {
-    this.pinned = this.curves();
+  /** Measured curves over the figure, and its amplitudes where the file tells them. */
+  show(measured, name) {
+    this.measured = measured;
+    at("unmeasure").hidden = !measured.length;
+    at("unmeasure").textContent = `Remove ${name}`;
+    const told = [...new Set(measured.map(({ acceleration }) => acceleration))];
+    if (measured.length && told.length <= MOST && told.every((value) => value > 0 && value <= LARGEST)) at("amplitudes").value = told.sort((a, b) => a - b).join(", ");
+    this.context.changed();
+  }
+
+  pin(what) {
+    this.pinned = pale(this.curves(), what);
     this.draw();
   }
 
   unpin() {
-    Object.assign(this, { pinned: [], measured: [] });
+    this.pinned = [];
     this.draw();
-  }
-
-  /** The steady state at the amplitude and frequency of the fields. */
-  async choose() {
-    const { pool, tell } = this.context, parameters = this.context.parameters();
-    const amplitude = at("point-amplitude").valueAsNumber, frequency = at("point-frequency").valueAsNumber;
-    for (const id of ["point-amplitude", "point-frequency"])
-      if (!at(id).checkValidity() || !(at(id).valueAsNumber > 0)) return tell(`${id.slice(6)} = ${at(id).value}: must be in ${at(id).min} .. ${at(id).max}`);
-    pool.drop("cycle");
-    at("point-text").textContent = "measuring the point";
-    const asked = (this.asked = (this.asked ?? 0) + 1);
-    try {
-      const cycle = await pool.run("cycle", "cycle", { parameters, amplitude, frequency });
-      if (asked === this.asked) this.showCycle(cycle, parameters);
-    } catch (error) {
-      if (asked !== this.asked) return;
-      at("point-text").textContent = "the motion below is of other parameters";
-      tell(error.message);
-    }
-  }
-
-  showCycle({ point, names, rows, fixed }, parameters) {
-    const column = (name) => rows.map((row) => row[names.indexOf(name)]);
-    const [theta, L1, L2, d, bound] = fixed;
-    this.cycle = { geometry: { theta, L1, L2, d }, frequency: point.frequency, rows, names, bound };
-    this.mark = point.H ? [point.frequency, magnitude(point)] : null;
-    this.draw();
-    this.drawLinkage(0);
-    const linear = parameters.suspension === "Linear";
-    const share = [column("zspring.moment_alpha"), column("zspring.moment_beta")].map((moments) => moments.map((m) => Math.abs(m) / bound));
-    const slides = share.map((some) => Math.round((100 * some.filter((s) => s >= SLIDES).length) / (some.length || 1)));
-    const phase = point.H ? (Math.atan2(point.H[1], point.H[0]) * 180) / Math.PI : NaN;
-    at("point-text").textContent = point.H
-      ? `${point.acceleration} m/s² at ${point.frequency} Hz: |H| = ${magnitude(point).toPrecision(4)} mm/N, phase ${phase.toFixed(1)}°, ${point.status} after ${point.periods} periods; ` +
-        (linear ? "no joints" : `the joint at the head slides ${slides[0]} %, that at the frame ${slides[1]} % of the period`)
-      : point.status;
-    const closed = (values) => [...values, values[0]];
-    const degrees = (values) => closed(values.map((value) => ((value - theta) * 180) / Math.PI));
-    const joints = [["alpha", "#2a788e", "solid"], ["beta", "#c60", "dashed"]];
-    this.moments.show(
-      linear || !rows.length ? [] : joints.map(([name, color, dash]) => ({ x: degrees(column(`zspring.${name}`)), y: closed(column(`zspring.moment_${name}`)), color, dash: DASHES[dash], label: name === "alpha" ? "at the head" : "at the frame" })),
-    );
-    const times = rows.map((_, i) => (1e3 * (i + 1)) / (point.frequency * rows.length));
-    this.force.show(rows.length ? [{ x: times, y: column("contact.force"), color: "#12395b" }] : []);
-    const first = point.H ? point.acceleration / (2 * Math.PI * point.frequency) ** 2 / Math.hypot(...point.H) : NaN;
-    fill(at("harmonics"), [["harmonic", "force, N", "of the first"], ["1", first.toPrecision(3), "100 %"], ...point.harmonics.map((force, i) => [String(i + 2), force.toPrecision(3), `${((100 * force) / first).toFixed(1)} %`])]);
-  }
-
-  drawLinkage(seconds) {
-    if (!this.cycle?.rows.length || at("linkage").offsetParent === null) return;
-    const { rows, names, geometry, frequency, bound } = this.cycle;
-    const place = Math.floor((((seconds * frequency) / SLOWER) % 1) * rows.length);
-    const value = (name) => rows[place][names.indexOf(name)];
-    const state = { head: value("head.z"), frame: value("upper_frame.z"), alpha: value("zspring.alpha"), beta: value("zspring.beta") };
-    drawLinkage(at("linkage"), geometry, state, ["alpha", "beta"].map((joint) => Math.abs(value(`zspring.moment_${joint}`)) >= SLIDES * bound));
   }
 
   save() {

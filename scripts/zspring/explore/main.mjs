@@ -2,15 +2,17 @@
 
 import { Controls } from "./controls.mjs";
 import { readDescription } from "./description.mjs";
-import { checked, parameterOf, readMeasured, readSsv, writeCsv, writeSsv } from "./files.mjs";
+import { checked, parameterOf, readSsv, writeCsv, writeSsv } from "./files.mjs";
 import { FrfView } from "./frf_view.mjs";
 import { LineView } from "./line_view.mjs";
+import { decoded, readMeasured } from "./measured.mjs";
 import { Pool } from "./pool.mjs";
 import { SlipView } from "./slip_view.mjs";
 import { StaticView } from "./static_view.mjs";
 
 const REST = 350; // ms after which a figure is refined
 const ACCURATE_STEP = 5e-4; // s, as the commands take it: the FMU's own is off by 7 % near 12 Hz
+const FIELDS = ["amplitudes", "point-amplitude", "point-frequency", "rate", "line-set", "speed", "uplift", "first-span", "last-span"]; // of views, kept in the address
 const at = (id) => document.getElementById(id);
 const data = JSON.parse(at("data").textContent);
 
@@ -48,30 +50,47 @@ const save = ({ made }, file, titles, rows) => {
   if (!made) return tell(`${file}: there is nothing to save yet`);
   download(file, writeCsv(made, titles, rows), "text/csv");
 };
-const context = { pool, pantograph, catenary, lines: data.lines, tell, head, save, readSsv, parameters: () => controls.parameters };
+/** What is shown of this id is not, or is again, of the parameters as they are. */
+const stale = (id, on) => {
+  at(id).classList.toggle("stale", on);
+  at(id).setAttribute("aria-busy", String(on));
+};
+const context = { pool, pantograph, catenary, lines: data.lines, tell, head, save, stale, readSsv, parameters: () => controls.parameters, changed: () => changed(false) };
 
 let rest = 0;
+const own = {}; // lines from files
 const controls = new Controls(pantograph, { "solver.step": ACCURATE_STEP }, changed, tell);
 const views = { frf: new FrfView(context), static: new StaticView(context), line: new LineView(context), slip: new SlipView(context) };
 let shown = "frf";
 
+/** The parameters that differ from the start values. */
+const changes = () => Object.entries(controls.values).map(([name, value]) => `${name}=${value}`);
+
 function commandLine() {
-  const parts = Object.entries(controls.values).map(([name, value]) => ` --set ${name}=${value}`).join("");
+  const quoted = (text) => (/^[-\w.:,=/]+$/.test(text) ? text : `"${text}"`);
+  const parts = changes().map((part) => ` --set ${part}`).join("");
   const [first, last] = ["first-span", "last-span"].map((id) => at(id).value);
   const journey = `--speed ${at("speed").value} --uplift ${at("uplift").value} --spans ${first}:${last}`;
-  return `zspring frf${parts}\nzspring couple --line ${at("line-set").value} ${journey}${parts}`;
+  const amplitudes = at("amplitudes").value.split(/[;,\s]+/).filter(Boolean).join(",");
+  return `zspring frf --amplitudes ${amplitudes} --frequencies 2:14:0.125${parts}\nzspring couple --line ${quoted(at("line-set").value)} ${journey}${parts}`;
 }
 
-async function changed(live) {
+function address() {
+  const fields = FIELDS.filter((id) => at(id).value !== initial[id] && !(id === "line-set" && at(id).value in own)).map((id) => [`page.${id}`, at(id).value]);
+  const all = [...(shown === "frf" ? [] : [["page.view", shown]]), ...fields, ...Object.entries(controls.values)];
+  return `#${all.map(([name, value]) => `${name}=${encodeURIComponent(value)}`).join("&")}`;
+}
+
+function changed(live) {
   clearTimeout(rest);
-  const given = Object.entries(controls.values).map(([name, value]) => `${name}=${encodeURIComponent(value)}`);
-  if (!live) history.replaceState(null, "", `#${given.join("&")}`);
+  if (!live) history.replaceState(null, "", address());
   at("command").value = commandLine();
   const synthetic = controls.synthetic;
   at("synthetic").hidden = !synthetic.length;
   at("synthetic").textContent = `Synthetic, nobody measured them: ${synthetic.join(", ")}`;
   tell("");
   if (live) views[shown].update(true);
+  else stale(shown, true);
   rest = setTimeout(() => views[shown].update(false), live ? REST : 0);
 }
 
@@ -82,42 +101,61 @@ function show(name) {
     at(`tab-${view}`).setAttribute("aria-selected", String(view === name));
     at(`tab-${view}`).tabIndex = view === name ? 0 : -1;
   }
-  views[name].update(false);
+  changed(false);
 }
 
+/** Parameters, fields and view from the address. Throws Error, and changes nothing then. */
 function fromFragment() {
-  const values = {};
+  const values = {}, fields = {};
+  let view = "frf";
   for (const part of location.hash.slice(1).split("&").filter(Boolean)) {
-    const [name, text] = part.split("=");
-    values[name] = checked(parameterOf(pantograph, name), decodeURIComponent(text ?? ""));
+    const [name, coded = ""] = part.split("="), text = decodeURIComponent(coded);
+    if (name === "page.view" && text in views) view = text;
+    else if (FIELDS.includes(name.replace("page.", "")) && name.startsWith("page.")) fields[name.slice(5)] = text;
+    else values[name] = checked(parameterOf(pantograph, name), text);
   }
-  return values;
+  for (const id of FIELDS) at(id).value = fields[id] ?? initial[id];
+  if (!at("line-set").value) at("line-set").selectedIndex = 0;
+  controls.replace(values);
+  show(view);
 }
 
 async function take(file) {
   try {
-    const text = await file.text();
-    if (/\.csv$/i.test(file.name)) {
-      const measured = readMeasured(text);
+    const text = decoded(new Uint8Array(await file.arrayBuffer()));
+    if (/\.(csv|txt|tsv)$/i.test(file.name)) {
+      views.frf.show(readMeasured(text), file.name);
       show("frf");
-      views.frf.measured = measured;
-      views.frf.draw();
-      tell("");
+    } else if (isOfLine(text)) {
+      own[file.name] = text;
+      Object.assign(data.lines, { [file.name]: text });
+      views.line.setLines(file.name);
+      show("line");
     } else controls.replace(readSsv(text, pantograph));
   } catch (error) {
     tell(`${file.name}: ${error.message}`);
   }
 }
 
-at("about").textContent = `${pantograph.model} ${pantograph.version} ${pantograph.guid}, the FMUs themselves, in this page. Nothing leaves it.`;
+/** Whether a set is of the line, which it is by its first parameter. Throws Error for a broken one of the line. */
+function isOfLine(text) {
+  const name = text.match(/Parameter\s+name="([^"]*)"/)?.[1];
+  return catenary.variables.has(name) && !pantograph.variables.has(name) && !!readSsv(text, catenary);
+}
+
+at("about").textContent = `${pantograph.model} and ${catenary.model} ${pantograph.version}, the FMUs themselves, in this page. Nothing leaves it.`;
 at("set").append(new Option("start values of the FMU", ""), ...Object.keys(data.sets).map((name) => new Option(name)));
 at("set").onchange = () => controls.replace(at("set").value ? readSsv(data.sets[at("set").value], pantograph) : {});
 at("reset").onclick = () => {
   at("set").value = "";
   controls.replace({});
 };
-at("pin").onclick = () => views[shown].pin?.();
-at("unpin").onclick = () => views[shown].unpin?.();
+at("pin").onclick = () => {
+  if (at(shown).classList.contains("stale")) return tell("Pin: wait until the curves are those of the parameters");
+  views[shown].pin(changes().join(" ") || "start values");
+};
+at("unpin").onclick = () => views[shown].unpin();
+at("unmeasure").onclick = () => views.frf.show([]);
 at("save").onclick = () => {
   const all = [...pantograph.variables.values()].filter(({ name, causality }) => causality === "parameter" && !/^(drive$|bench\.)/.test(name));
   const values = Object.fromEntries(all.map(({ name }) => [name, controls.get(name)]));
@@ -152,27 +190,28 @@ for (const button of document.querySelectorAll("[data-png]"))
     c.drawImage(source, 0, 0);
     c.fillStyle = "#444";
     c.font = `${Math.round(0.6 * note)}px sans-serif`;
-    const view = views[button.closest("section").id], made = source.id === "sweep-plot" ? view.swept?.made : view.made;
+    const view = views[button.closest("section").id], made = source.id === "sweep-plot" ? view.sweep.swept?.made : view.made;
     const { FMU, GUID, synthetic, ...settings } = made ?? head();
     c.fillText(`${FMU} ${GUID}${synthetic ? ", Z-spring parameters synthetic" : ""}`, 8, source.height + note * 0.8);
     c.fillText(Object.entries(settings).map(([name, value]) => `${name}=${value}`).join(" "), 8, source.height + note * 1.6);
     download(`${button.dataset.png}.png`, copy.toDataURL("image/png"));
   };
 
-try {
-  await pool.ready;
-  controls.replace(fromFragment());
-} catch (error) {
-  controls.replace({});
-  tell(error.message);
-}
-for (const id of ["line-set", "speed", "uplift", "first-span", "last-span"])
-  at(id).addEventListener("change", () => (at("command").value = commandLine()));
-window.onhashchange = () => {
+const restore = () => {
   try {
-    controls.replace(fromFragment());
+    fromFragment();
   } catch (error) {
-    tell(error.message);
+    controls.replace({});
+    show(shown);
+    tell(`address: ${error.message}`);
   }
 };
+const initial = Object.fromEntries(FIELDS.map((id) => [id, at(id).value]));
+window.onhashchange = restore;
+try {
+  await pool.ready;
+  restore();
+} catch (error) {
+  tell(`The FMUs cannot run here: ${error.message}`);
+}
 document.documentElement.dataset.ready = "true";

@@ -63,23 +63,31 @@ const jobs = {
     return pantograph.get(["zspring.k_locked", "zspring.k_free", "zspring.theta"]);
   },
 
-  /** A run to `stop` m: {times, positions, forces} each step, and frames {position, shape} where they are asked for. */
+  /**
+   * A run to `stop` m: {positions, forces} each step, the largest uplift of a support in m (`lifted`), and frames
+   * {row, shape} where they are asked for.
+   */
   line({ run, stop, frames }, tell) {
     const catenary = instance("Catenary");
     const coupled = new LineRun(catenary, instance("ZSpringPantograph"), run);
-    const told = { positions: [coupled.position], forces: [coupled.force], frames: [] };
+    const told = { positions: [coupled.position], forces: [coupled.force], frames: [], lifted: 0 };
+    const names = [...fmus.Catenary.description.variables.keys()].filter((name) => name.startsWith("support.uplift"));
+    const supports = catenary.reals(names);
     const often = Math.max(1, Math.round(FRAME / run.step)), length = run.length;
     while (coupled.position < stop) {
       coupled.advance();
       told.positions.push(coupled.position);
       told.forces.push(coupled.force);
-      if (!frames || coupled.steps % often) continue;
+      if (coupled.steps % often) continue;
+      told.lifted = Math.max(told.lifted, ...supports.get());
+      if (!frames) continue;
       const first = Math.max(0, Math.ceil((coupled.position - HALF_WINDOW) / APART));
       const last = Math.min(Math.floor(length / APART), Math.floor((coupled.position + HALF_WINDOW) / APART));
       const places = Array.from({ length: last - first + 1 }, (_, i) => APART * (first + i));
       told.frames.push({ row: coupled.steps, ...shape(catenary, places) });
       if (told.frames.length % 25 === 0) tell({ position: coupled.position });
     }
+    supports.free();
     coupled.free();
     return told;
   },
