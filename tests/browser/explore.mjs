@@ -14,7 +14,7 @@ const told = { errors: [], requests: [] };
 const REFINED = "every 0.125 Hz";
 
 try {
-  const page = await browser.newPage({ viewport: { width: 1300, height: 1000 } });
+  const page = await browser.newPage({ viewport: { width: 1120, height: 925 }, deviceScaleFactor: firefox ? 1 : 1.25 });
   page.on("pageerror", (error) => told.errors.push(String(error)));
   page.on("console", (message) => {
     if (message.type() === "error" || message.type() === "warning") told.errors.push(message.text());

@@ -134,5 +134,7 @@ def test_wheel_carries_the_release():
             module = wheel.read(f"zspring/explore/{model}.wasm")
             assert module.startswith(b"\0asm") and os.fsencode(ROOT) + b"/" not in module
         names = set(wheel.namelist())
+    for file in (ROOT / "scripts/zspring/explore").glob("*.[!w]*"):  # scripts and page; modules are above
+        assert f"zspring/explore/{file.name}" in names
     for file in (ROOT / "resources").glob("*/*.ssv"):
         assert f"zspring/{file.relative_to(ROOT).as_posix()}" in names

@@ -55,12 +55,11 @@ export function drawLinkage(canvas, { theta, L1, L2, d }, { head, frame, alpha, 
     c.stroke();
   });
   c.fillStyle = "#222";
-  c.textAlign = "left";
-  c.fillText("head", 6, height - 6);
   c.textAlign = "center";
   c.fillText("joint full: sticks, open: slides", width / 2, height - 6);
+  c.fillText("head", x(-beside * 0.3), y(head) + 22);
+  c.fillText("frame", x(d + beside * 0.3), y(top) - 12);
   c.textAlign = "right";
-  c.fillText("frame", width - 6, height - 6);
   if (magnified > 1) c.fillText(`motion × ${magnified}`, width - 6, 14);
 }
 

@@ -84,7 +84,7 @@ export class Plot {
     c.lineWidth = 1;
     c.textAlign = "center";
     c.beginPath();
-    for (const x of ticks(x0, x1, w / 70, false)) {
+    for (const x of ticks(x0, x1, Math.max(3, w / 70), false)) {
       c.moveTo(this.px(x), top);
       c.lineTo(this.px(x), top + h);
       c.fillText(shown(x), this.px(x), top + h + 15);

@@ -84,7 +84,7 @@ export class PointView {
     const phase = point.H ? (Math.atan2(point.H[1], point.H[0]) * 180) / Math.PI : NaN;
     at("point-text").textContent = point.H
       ? `${point.acceleration} m/s² at ${point.frequency} Hz: |H| = ${magnitude(point).toPrecision(4)} mm/N, phase ${phase.toFixed(1)}°, ${point.status} after ${point.periods} periods; ` +
-        (!hasDryFriction(parameters) ? "no joint with dry friction" : `the joint at the head slides ${slides[0]} %, that at the frame ${slides[1]} % of the period`) +
+        (!hasDryFriction(parameters) ? "no joint with dry friction" : `the joint at the head slides ${slides[0]}\u00a0%, that at the frame ${slides[1]}\u00a0% of the period`) +
         (Math.min(...column("contact.force")) < 0 ? "; the force falls below 0: the bench holds the head, a wire would lose it" : "")
       : point.status;
     const closed = (values) => [...values, values[0]];
