@@ -75,7 +75,7 @@ try {
   told.written = await save("#save");
   await drop("measured.csv", given.csv);
   await measured();
-  told.afterCsv = [await page.isVisible("#message"), await page.inputValue("#amplitudes"), await text("#unmeasure")];
+  told.afterCsv = [await page.isVisible("#message"), await page.inputValue("#amplitudes"), await text("#unmeasure"), await page.inputValue("#low"), await text("#frf-state")];
   await drop("broken.ssv", given.broken);
   await page.waitForSelector("#message:not([hidden])");
   told.refusal = await text("#message");

@@ -72,7 +72,7 @@ const jobs = {
       }
     }),
 
-  colors: async () => (await load("plot")).COLORS,
+  colors: async () => (await load("plot")).colors(8),
 
   /** Refusals of values by name. */
   values() {

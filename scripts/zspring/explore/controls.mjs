@@ -2,7 +2,7 @@
 
 import { checked } from "./files.mjs";
 
-const SET_BY_VIEWS = /^(drive$|bench\.)/;
+export const SET_BY_VIEWS = /^(drive$|bench\.)/;
 const SLIDERS = ["zspring.Mf", "zspring.k", "zspring.l0", "zspring.L1", "zspring.L2", "zspring.d", "m1", "c3", "k2", "static_force"];
 const RANGE = 4; // a slider goes to so many times the start value
 const NOTCHES = 400;

@@ -1,15 +1,21 @@
 // Frequency response by amplitude between its linear bounds, beside a measured one.
 
-import { COLORS, DASHES, pale, Plot } from "./plot.mjs";
+import { colors, DASHES, pale, Plot } from "./plot.mjs";
 import { magnitude, PointView } from "./point_view.mjs";
 import { fill } from "./tables.mjs";
 
-const LOW = 2, HIGH = 14; // Hz
+const LOWEST = 0.5, HIGHEST = 20; // Hz
 const GRIDS = { coarse: 0.5, fine: 0.125 }; // Hz
 const BOUNDS = { locked: "LinearLocked", free: "LinearFree" };
 const MOST = 8, LARGEST = 20; // amplitudes, m/s2
 const at = (id) => document.getElementById(id);
-const grid = (step) => Array.from({ length: Math.round((HIGH - LOW) / step) + 1 }, (_, i) => LOW + i * step);
+
+/** Frequencies in Hz between those of the fields, `step` apart. Throws Error. */
+function grid(step) {
+  const [low, high] = ["low", "high"].map((id) => at(id).valueAsNumber);
+  if (!(low >= LOWEST && low < high && high <= HIGHEST)) throw new Error(`frequencies from ${at("low").value} to ${at("high").value} Hz: must ascend in ${LOWEST} .. ${HIGHEST}`);
+  return Array.from({ length: Math.floor((high - low) / step + 1e-9) + 1 }, (_, i) => low + i * step);
+}
 
 /** Amplitudes from text, ascending. Throws Error. */
 export function amplitudesOf(text) {
@@ -33,7 +39,7 @@ export class FrfView {
     });
     this.point = new PointView(context, () => this.draw());
     at("frf-csv").onclick = () => this.save();
-    at("amplitudes").onchange = () => context.changed();
+    for (const id of ["amplitudes", "low", "high"]) at(id).onchange = () => context.changed();
   }
 
   /** Measure the figure with the parameters as they are; while they move coarse, one figure after the other. */
@@ -54,14 +60,15 @@ export class FrfView {
     const parameters = this.context.parameters(), made = this.context.head();
     if (!live) stale("frf", true);
     pool.drop("frf");
-    let amplitudes;
+    const step = live ? GRIDS.coarse : GRIDS.fine;
+    let amplitudes, frequencies;
     try {
       amplitudes = amplitudesOf(at("amplitudes").value);
+      frequencies = grid(step);
     } catch (error) {
-      at("frf-state").textContent = "the curves are of other amplitudes";
+      at("frf-state").textContent = "the curves are of other amplitudes or frequencies";
       return tell(error.message);
     }
-    const step = live ? GRIDS.coarse : GRIDS.fine, frequencies = grid(step);
     at("frf-state").textContent = live ? "coarse while parameters move" : "measuring";
     const tasks = [
       ...amplitudes.map((amplitude) => [amplitude, parameters]),
@@ -73,7 +80,7 @@ export class FrfView {
         tasks.map(([key, own]) => pool.run("frf", "sweep", { parameters: own, amplitude: typeof key === "number" ? key : 1, frequencies })),
       );
       if (version !== this.version) return;
-      Object.assign(this, { points: new Map(tasks.map(([key], i) => [key, found[i]])), step, made });
+      Object.assign(this, { points: new Map(tasks.map(([key], i) => [key, found[i]])), step, made, frequencies });
       stale("frf", false);
       this.draw();
       at("frf-state").textContent = this.told();
@@ -90,9 +97,10 @@ export class FrfView {
     const all = [...this.points.values()].flat(), count = (wanted) => all.filter(({ status }) => wanted.test(status)).length;
     const trouble = [[/^not/, "not settled (crossed out)"], [/^period/, "repeating only after several periods (crossed out)"], [/^failed/, "failed (left out)"]];
     const found = trouble.map(([wanted, what]) => [count(wanted), what]).filter(([n]) => n).map(([n, what]) => `; ${n} ${what}`);
-    const beyond = [...this.points].filter(([key, points]) => typeof key === "number" && points.length < grid(this.step).length);
+    const beyond = [...this.points].filter(([key, points]) => typeof key === "number" && points.length < this.frequencies.length);
     const stroke = beyond.length ? `; from ${beyond.map(([key]) => `${key}`).join(", ")} m/s² low frequencies left out: stroke over 100 mm` : "";
-    return `every ${this.step} Hz${found.join("")}${stroke}`;
+    const other = this.measured.length ? this.others() : [];
+    return `every ${this.step} Hz${found.join("")}${stroke}${other.length ? `; measured otherwise: ${other.join("; ")}` : ""}`;
   }
 
   /** By the keyboard along the curves: frequency, or the next amplitude. */
@@ -101,28 +109,28 @@ export class FrfView {
     const place = Math.max(0, keys.findIndex((one) => one >= amplitude));
     const by = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [-1, 0], ArrowUp: [1, 0] }[key];
     const next = keys[Math.min(keys.length - 1, Math.max(0, place + by[0]))] ?? amplitude;
-    this.point.set(by[0] ? next : amplitude, Math.min(HIGH, Math.max(LOW, frequency + by[1] * GRIDS.fine)));
+    this.point.set(by[0] ? next : amplitude, Math.min(HIGHEST, Math.max(LOWEST, frequency + by[1] * GRIDS.fine)));
   }
 
   curves() {
-    const made = [], amplitudes = [...this.points.keys()].filter((key) => typeof key === "number");
+    const made = [], amplitudes = [...this.points.keys()].filter((key) => typeof key === "number"), own = colors(amplitudes.length);
     for (const [key, found] of this.points) {
       const bad = found.flatMap((p, i) => (p.status === "settled" ? [] : [i]));
       const curve = { x: found.map((p) => p.frequency), y: found.map(magnitude), bad };
-      if (typeof key === "number") made.push({ ...curve, color: COLORS[amplitudes.indexOf(key)], label: `${key} m/s²`, amplitude: key });
+      if (typeof key === "number") made.push({ ...curve, color: own[amplitudes.indexOf(key)], label: `${key} m/s²`, amplitude: key });
       else made.push({ ...curve, color: "#000", dash: key === "locked" ? DASHES.dashed : DASHES.dotted, label: `rods ${key}`, passive: true });
     }
     return made;
   }
 
   draw() {
-    const amplitudes = [...this.points.keys()];
+    const amplitudes = [...this.points.keys()].filter((key) => typeof key === "number"), own = colors(amplitudes.length), other = colors(this.measured.length);
     const measured = this.measured.map(({ label, acceleration, x, y }, i) => {
       const place = amplitudes.indexOf(acceleration);
-      return { x, y: y.map((value) => 1e3 * value), dots: place < 0 ? "cross" : "ring", color: COLORS[place < 0 ? i % COLORS.length : place], label: `measured ${label}`, passive: true };
+      return { x, y: y.map((value) => 1e3 * value), dots: place < 0 ? "cross" : "ring", color: place < 0 ? other[i] : own[place], label: `measured ${label}`, passive: true };
     });
-    const all = this.measured.flatMap(({ x }) => x).concat(LOW, HIGH);
-    this.plot.show([...this.pinned, ...this.curves(), ...measured], { x: [Math.min(...all), Math.max(...all)] }, this.point.mark);
+    const all = this.measured.flatMap(({ x }) => x).concat(this.frequencies ?? []);
+    this.plot.show([...this.pinned, ...this.curves(), ...measured], all.length ? { x: [Math.min(...all), Math.max(...all)] } : {}, this.point.mark);
     const rows = [["amplitude", "Hz, mm/N"]];
     for (const [key, points] of this.points) {
       const peaks = points.slice(1, -1).filter((p, i) => magnitude(p) > magnitude(points[i]) && magnitude(p) > magnitude(points[i + 2]));
@@ -133,13 +141,18 @@ export class FrfView {
     fill(at("resonances"), rows);
   }
 
-  /** Measured curves over the figure, and its amplitudes where the file tells them. */
-  show(measured, name) {
-    this.measured = measured;
+  /**
+   * Measured curves over the figure, its amplitudes where the file tells them, and its frequencies.
+   * others(): lines of text, what is other in the measurement.
+   */
+  show(measured, name, others) {
+    Object.assign(this, { measured, others });
     at("unmeasure").hidden = !measured.length;
     at("unmeasure").textContent = `Remove ${name}`;
     const told = [...new Set(measured.map(({ acceleration }) => acceleration))];
     if (measured.length && told.length <= MOST && told.every((value) => value > 0 && value <= LARGEST)) at("amplitudes").value = told.sort((a, b) => a - b).join(", ");
+    const all = measured.flatMap(({ x }) => x), low = Math.max(LOWEST, Math.floor(Math.min(...all))), high = Math.min(HIGHEST, Math.ceil(Math.max(...all)));
+    if (low < high) [at("low").value, at("high").value] = [low, high];
     this.context.changed();
   }
 

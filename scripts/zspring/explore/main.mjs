@@ -1,18 +1,18 @@
 // The page: loads the FMUs into workers, keeps the parameters, and lets the views compute and draw.
 
-import { Controls } from "./controls.mjs";
+import { Controls, SET_BY_VIEWS } from "./controls.mjs";
 import { readDescription } from "./description.mjs";
 import { checked, parameterOf, readSsv, writeCsv, writeSsv } from "./files.mjs";
 import { FrfView } from "./frf_view.mjs";
 import { LineView } from "./line_view.mjs";
-import { decoded, readMeasured } from "./measured.mjs";
+import { decoded, otherThan, readMeasured } from "./measured.mjs";
 import { Pool } from "./pool.mjs";
 import { SlipView } from "./slip_view.mjs";
 import { StaticView } from "./static_view.mjs";
 
 const REST = 350; // ms after which a figure is refined
 const ACCURATE_STEP = 5e-4; // s, as the commands take it: the FMU's own is off by 7 % near 12 Hz
-const FIELDS = ["amplitudes", "point-amplitude", "point-frequency", "rate", "line-set", "speed", "uplift", "first-span", "last-span"]; // of views, kept in the address
+const FIELDS = ["amplitudes", "low", "high", "point-amplitude", "point-frequency", "rate", "line-set", "speed", "uplift", "first-span", "last-span"]; // of views, kept in the address
 const at = (id) => document.getElementById(id);
 const data = JSON.parse(at("data").textContent);
 
@@ -72,7 +72,7 @@ function commandLine() {
   const [first, last] = ["first-span", "last-span"].map((id) => at(id).value);
   const journey = `--speed ${at("speed").value} --uplift ${at("uplift").value} --spans ${first}:${last}`;
   const amplitudes = at("amplitudes").value.split(/[;,\s]+/).filter(Boolean).join(",");
-  return `zspring frf --amplitudes ${amplitudes} --frequencies 2:14:0.125${parts}\nzspring couple --line ${quoted(at("line-set").value)} ${journey}${parts}`;
+  return `zspring frf --amplitudes ${amplitudes} --frequencies ${at("low").value}:${at("high").value}:0.125${parts}\nzspring couple --line ${quoted(at("line-set").value)} ${journey}${parts}`;
 }
 
 function address() {
@@ -112,6 +112,7 @@ function fromFragment() {
     const [name, coded = ""] = part.split("="), text = decodeURIComponent(coded);
     if (name === "page.view" && text in views) view = text;
     else if (FIELDS.includes(name.replace("page.", "")) && name.startsWith("page.")) fields[name.slice(5)] = text;
+    else if (SET_BY_VIEWS.test(name)) throw new Error(`${name}: is set by the views`);
     else values[name] = checked(parameterOf(pantograph, name), text);
   }
   for (const id of FIELDS) at(id).value = fields[id] ?? initial[id];
@@ -124,14 +125,18 @@ async function take(file) {
   try {
     const text = decoded(new Uint8Array(await file.arrayBuffer()));
     if (/\.(csv|txt|tsv)$/i.test(file.name)) {
-      views.frf.show(readMeasured(text), file.name);
+      views.frf.show(readMeasured(text), file.name, () => otherThan(text, { static_force: controls.get("static_force"), friction: controls.get("friction") }));
       show("frf");
     } else if (isOfLine(text)) {
       own[file.name] = text;
       Object.assign(data.lines, { [file.name]: text });
       views.line.setLines(file.name);
       show("line");
-    } else controls.replace(readSsv(text, pantograph));
+    } else {
+      const values = readSsv(text, pantograph), ignored = Object.keys(values).filter((name) => SET_BY_VIEWS.test(name));
+      controls.replace(values);
+      if (ignored.length) tell(`${file.name}: ${ignored.join(", ")}: not taken, the views set them`);
+    }
   } catch (error) {
     tell(`${file.name}: ${error.message}`);
   }
@@ -157,7 +162,7 @@ at("pin").onclick = () => {
 at("unpin").onclick = () => views[shown].unpin();
 at("unmeasure").onclick = () => views.frf.show([]);
 at("save").onclick = () => {
-  const all = [...pantograph.variables.values()].filter(({ name, causality }) => causality === "parameter" && !/^(drive$|bench\.)/.test(name));
+  const all = [...pantograph.variables.values()].filter(({ name, causality }) => causality === "parameter" && !SET_BY_VIEWS.test(name));
   const values = Object.fromEntries(all.map(({ name }) => [name, controls.get(name)]));
   download("pantograph.ssv", writeSsv(values, pantograph, "explored"), "application/xml");
 };

@@ -120,6 +120,14 @@ export function readMeasured(text) {
   return found.map(({ label, acceleration, some }) => ({ label, acceleration, x: some.map((point) => point.frequency), y: some.map((point) => point.H) }));
 }
 
+/** What the head of a file says of its bench that is other there than what the page has: lines of text. */
+export function otherThan(text, { static_force, friction }) {
+  const stated = Object.fromEntries([...text.matchAll(/^# (static_force|friction|direction): (.*?)\s*$/gm)].map(([, name, value]) => [name, value]));
+  const here = { static_force: `${static_force} N`, friction, direction: "up" };
+  const same = (name) => stated[name] === here[name] || (name === "static_force" && /^[-+.\de]+ N$/.test(stated[name]) && parseFloat(stated[name]) === static_force);
+  return Object.keys(stated).filter((name) => !same(name)).map((name) => `${name} ${stated[name]}, here ${here[name]}`);
+}
+
 /** Text of a file's bytes: UTF-8, UTF-16 with its mark, else Windows-1252. */
 export function decoded(bytes) {
   const [first, second] = bytes;

@@ -2,7 +2,9 @@
 
 const PAD = { left: 62, right: 14, bottom: 40 };
 const ROW = 18, NEAR = 30; // px: a row of the legend; how near the pointer must be
-export const COLORS = ["#440154", "#414487", "#2a788e", "#1f9673", "#5f9e1a", "#b58600", "#c4500c", "#a3105c"]; // from small to large
+const COLORS = ["#440154", "#414487", "#2a788e", "#1f9673", "#5f9e1a", "#b58600", "#c4500c", "#a3105c"];
+/** So many colors, from small to large. */
+export const colors = (count) => Array.from({ length: count }, (_, i) => COLORS[count < 2 ? 0 : Math.round((i * (COLORS.length - 1)) / (count - 1)) % COLORS.length]);
 export const DASHES = { solid: [], dashed: [6, 4], dotted: [2, 3] };
 
 /** Round ticks from low to high, about `count`; powers of ten with 2 and 5 where logarithmic. */

@@ -1,6 +1,6 @@
 // Static force of the head suspension against its deflection: slow loops with a clamped frame.
 
-import { COLORS, pale, Plot } from "./plot.mjs";
+import { colors, pale, Plot } from "./plot.mjs";
 import { fill } from "./tables.mjs";
 
 const AMPLITUDES = [0.5, 1, 2, 5, 10, 20]; // mm
@@ -43,7 +43,7 @@ export class StaticView {
   }
 
   curves() {
-    return this.loops.map(({ amplitude, compression, force }, i) => ({ x: compression.map((x) => 1e3 * x), y: force, color: COLORS[i], label: `${amplitude} mm` }));
+    return this.loops.map(({ amplitude, compression, force }, i) => ({ x: compression.map((x) => 1e3 * x), y: force, color: colors(AMPLITUDES.length)[i], label: `${amplitude} mm` }));
   }
 
   draw() {
