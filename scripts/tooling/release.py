@@ -124,7 +124,7 @@ def write_fmus(builds: dict[str, Path], output: Path) -> list[Path]:
 
 def build_modules(descriptor: int) -> dict[str, Path]:
     """The models as WebAssembly modules, by identifier. Raises SetupError."""
-    say("building the WebAssembly modules (one minute)")
+    say("building the WebAssembly modules (at the first time one to four minutes)")
     log = RELEASE_BUILD / "webassembly.log"
     log.unlink(missing_ok=True)
     return webassembly.build(Runner(log, ROOT, environment(), descriptor))

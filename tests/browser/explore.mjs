@@ -72,6 +72,7 @@ try {
   await drop("own.ssv", given.ssv);
   await measured();
   told.dropped = await page.inputValue('[id="value-m1"]');
+  told.sets = [await page.inputValue("#set")];
   told.written = await save("#save");
   await drop("measured.csv", given.csv);
   await measured();
@@ -85,7 +86,10 @@ try {
   told.outOfBounds = await text("#message");
 
   const finished = (id) => until(([name]) => document.getElementById(name).getAttribute("aria-busy") === "false", id);
+  await page.selectOption("#set", "dsa-250");
+  told.sets.push(await page.inputValue("#set"), await page.inputValue('[id="value-m1"]'));
   await page.click("#reset");
+  told.sets.push(await page.inputValue("#set"));
   await drop("own line.ssv", given.line);
   await finished("line");
   told.ownLine = [await page.inputValue("#line-set"), await page.inputValue("#command")];

@@ -30,7 +30,9 @@ from zspring.line.statistics import low_pass
 from zspring.line.system import System
 from zspring.parameter_sets import LINES, find_set, read_set
 
-MEASURED = "# direction: down\n# static_force: 120.0 N\nfrequency [Hz],amplitude [m/s2],magnitude [m/N]\n5,1,2e-4\n6,1,3e-4\n"
+MEASURED = (
+    "# direction: down\n# static_force: 120.0 N\nfrequency [Hz],amplitude [m/s2],magnitude [m/N]\n5,1,2e-4\n6,1,3e-4\n"
+)
 OWN = """<ParameterSet xmlns="http://ssp-standard.org/SSP1/SystemStructureParameterValues" version="1.0" name="x">
 <Parameters><Parameter name="m1"><Real value="8" unit="kg"/></Parameter></Parameters></ParameterSet>"""
 OWN_LINE = OWN.replace('"m1"><Real value="8" unit="kg"', '"contact_wire.tension"><Real value="27" unit="kN"').replace(
@@ -105,7 +107,7 @@ def test_the_curves_are_right_at_five_points_before_and_after_a_slider_moved(tol
 
 
 def test_files_arrive_and_broken_ones_get_a_line(told, tmp_path):
-    assert told["dropped"] == "8"
+    assert told["dropped"] == "8" and told["sets"] == ["own values", "dsa-250", "7.51", ""]
     state = "every 0.125 Hz; measured otherwise: direction down, here up"
     assert told["afterCsv"] == [False, "1", "Remove measured.csv", "5", state]
     path = tmp_path / "written.ssv"

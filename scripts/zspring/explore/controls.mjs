@@ -98,6 +98,11 @@ export class Controls {
     this.changed(live);
   }
 
+  /** Those of these values that differ from the starts. */
+  apart(values) {
+    return Object.fromEntries(Object.entries(values).filter(([name, value]) => value !== this.start(this.description.variables.get(name))));
+  }
+
   replace(values) {
     this.values = {};
     for (const show of this.fields.values()) show();

@@ -110,6 +110,7 @@ export class LineView {
       at("place").disabled = at("play").disabled = false;
       this.draw();
       this.show(Math.min(this.frame, this.frames.length - 1));
+      this.play(this.playing);
     } catch (error) {
       if (version !== this.version) return;
       tell(error.message);

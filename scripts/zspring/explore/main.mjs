@@ -13,6 +13,7 @@ import { StaticView } from "./static_view.mjs";
 const REST = 350; // ms after which a figure is refined
 const ACCURATE_STEP = 5e-4; // s, as the commands take it: the FMU's own is off by 7 % near 12 Hz
 const FIELDS = ["amplitudes", "low", "high", "point-amplitude", "point-frequency", "rate", "line-set", "speed", "uplift", "first-span", "last-span"]; // of views, kept in the address
+const OWN = "own values"; // no packaged set
 const at = (id) => document.getElementById(id);
 const data = JSON.parse(at("data").textContent);
 
@@ -63,6 +64,12 @@ const controls = new Controls(pantograph, { "solver.step": ACCURATE_STEP }, chan
 const views = { frf: new FrfView(context), static: new StaticView(context), line: new LineView(context), slip: new SlipView(context) };
 let shown = "frf";
 
+/** The name of the set that has these values that differ from the start values. */
+function setOf(values) {
+  const text = (some) => JSON.stringify(Object.entries(some).sort());
+  return [...sets].find(([, some]) => text(some) === text(values))?.[0] ?? OWN;
+}
+
 /** The parameters that differ from the start values. */
 const changes = () => Object.entries(controls.values).map(([name, value]) => `${name}=${value}`);
 
@@ -85,6 +92,7 @@ function changed(live) {
   clearTimeout(rest);
   if (!live) history.replaceState(null, "", address());
   at("command").value = commandLine();
+  at("set").value = setOf(controls.values);
   const synthetic = controls.synthetic;
   at("synthetic").hidden = !synthetic.length;
   at("synthetic").textContent = `Synthetic, nobody measured them: ${synthetic.join(", ")}`;
@@ -149,12 +157,11 @@ function isOfLine(text) {
 }
 
 at("about").textContent = `${pantograph.model} and ${catenary.model} ${pantograph.version}, the FMUs themselves, in this page. Nothing leaves it.`;
-at("set").append(new Option("start values of the FMU", ""), ...Object.keys(data.sets).map((name) => new Option(name)));
-at("set").onchange = () => controls.replace(at("set").value ? readSsv(data.sets[at("set").value], pantograph) : {});
-at("reset").onclick = () => {
-  at("set").value = "";
-  controls.replace({});
-};
+const sets = new Map([["", {}], ...Object.entries(data.sets).map(([name, text]) => [name, controls.apart(readSsv(text, pantograph))])]);
+at("set").append(new Option("start values of the FMU", ""), ...Object.keys(data.sets).map((name) => new Option(name)), new Option("own values", OWN));
+at("set").options[sets.size].disabled = true;
+at("set").onchange = () => controls.replace(sets.get(at("set").value));
+at("reset").onclick = () => controls.replace({});
 at("pin").onclick = () => {
   if (at(shown).classList.contains("stale")) return tell("Pin: wait until the curves are those of the parameters");
   views[shown].pin(changes().join(" ") || "start values");

@@ -1,5 +1,7 @@
 // Workers that share the jobs. Jobs of a kind that are asked for anew take the place of those that still wait.
 
+const LAST = "sweep"; // the kind that all others go before
+
 /** Workers made of this source text, with the FMUs {model: {bytes, description}} loaded. */
 export class Pool {
   constructor(source, models, count) {
@@ -51,7 +53,8 @@ export class Pool {
   /** The answer to a job; rejects with the FMU's message. */
   run(kind, job, given, progress) {
     return new Promise((resolve, reject) => {
-      this.waiting.push({ number: ++this.number, kind, job, given, progress, resolve, reject });
+      const place = kind === LAST ? -1 : this.waiting.findIndex((task) => task.kind === LAST);
+      this.waiting.splice(place < 0 ? this.waiting.length : place, 0, { number: ++this.number, kind, job, given, progress, resolve, reject });
       this.next();
     });
   }
