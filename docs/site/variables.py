@@ -1,4 +1,4 @@
-"""The directive {model-variables}: a table of what a model description of this clone has, in its order."""
+"""The directive {model-variables}: a table of what `zspring info` tells of a model description of this clone."""
 
 from __future__ import annotations
 
@@ -11,25 +11,16 @@ from fmpy.model_description import ScalarVariable
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-HEAD = "name", "causality", "unit", "start", "allowed", "description"
+from zspring.info import HEAD, row_of
+
 NUMBER = re.compile(r"\[(\d+)\]")
-
-
-def cells(variable: ScalarVariable) -> list[str]:
-    bounds = [bound for bound in (variable.min, variable.max) if bound is not None]
-    allowed = f"{variable.min or '-inf'} .. {variable.max or 'inf'}" if bounds else ""
-    start = variable.start or ""
-    if variable.declaredType and variable.declaredType.items:
-        names = {item.value: item.name for item in variable.declaredType.items}
-        start, allowed = names.get(start, start), ", ".join(f"{value} {name}" for value, name in names.items())
-    return [variable.name, variable.causality, variable.unit or "", start, allowed, variable.description or ""]
 
 
 def families(variables: list[ScalarVariable]) -> list[list[str]]:
     """Rows of all variables; members of an array that differ in their number alone are one row, first to last."""
     rows: dict[tuple[str, ...], list[str]] = {}
     for variable in variables:
-        row = cells(variable)
+        row = row_of(variable)
         key = tuple(NUMBER.sub("[]", cell) if i in (0, 5) else cell for i, cell in enumerate(row))
         rows[key] = [f"{rows[key][0].split(' ... ')[0]} ... {row[0]}", *rows[key][1:]] if key in rows else row
     return list(rows.values())

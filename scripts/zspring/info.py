@@ -17,6 +17,8 @@ from .parameter_sets import LINES, PANTOGRAPHS, describe_set, packaged_sets
 from .text_tables import aligned
 from .variables import Variables, parse, text
 
+HEAD = ["name", "causality", "unit", "start", "allowed", "description"]
+
 
 def variable_table(variables: Variables, names: Sequence[str] = ()) -> list[str]:
     """Aligned lines: name, causality, unit, start, bounds, description.
@@ -30,10 +32,11 @@ def variable_table(variables: Variables, names: Sequence[str] = ()) -> list[str]
             if not any(fnmatchcase(other, name) for other in known):
                 raise ZSpringError(f"no variable {name!r} in the FMU{did_you_mean(name, known)}")
         wanted = [variable for variable in variables if any(fnmatchcase(variable.name, name) for name in names)]
-    return aligned([["name", "causality", "unit", "start", "allowed", "description"], *map(_row, wanted)])
+    return aligned([HEAD, *map(row_of, wanted)])
 
 
-def _row(variable: ScalarVariable) -> list[str]:
+def row_of(variable: ScalarVariable) -> list[str]:
+    """Cells below HEAD."""
     causality = f"{'tunable ' if variable.variability == 'tunable' else ''}{variable.causality}"
     start = "" if variable.start is None else text(variable, parse(variable, variable.start))
     return [variable.name, causality, variable.unit or "", start, _bounds(variable), variable.description or ""]
