@@ -27,7 +27,7 @@ def file_head(
 def content_of(paths: Iterable[Path]) -> dict[str, str]:
     """For a head: the files that went into the results, each with the SHA-256 of what it held."""
     digests = ((hashlib.sha256(path.read_bytes()).hexdigest(), path) for path in paths)
-    return {f"file {i}": f"{digest} {path}" for i, (digest, path) in enumerate(digests, 1)}
+    return {f"file {i}": f"{digest} {path.as_posix()}" for i, (digest, path) in enumerate(digests, 1)}
 
 
 def now() -> str:

@@ -102,7 +102,7 @@ def write_page(path: Path, title: str, chapters: Sequence[Chapter], settings: Ma
     path.parent.mkdir(parents=True, exist_ok=True)
     page = environment.from_string(template).render(title=title, chapters=chapters, settings=json.dumps(settings))
     with replaced(path) as unfinished:
-        unfinished.write_text(page, encoding="utf-8")
+        unfinished.write_text(page, encoding="utf-8", newline="\n")
     return path
 
 

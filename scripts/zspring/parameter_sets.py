@@ -183,7 +183,7 @@ def write_set(
         base = {key: number for key, number in base.items() if number not in ("0", neutral.get(key))}
         ET.SubElement(element, f"{{{_SSC}}}BaseUnit", base)
     ET.indent(root)
-    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    path.write_bytes(ET.tostring(root, encoding="utf-8", xml_declaration=True))
 
 
 def _root(path: Path) -> ET.Element:

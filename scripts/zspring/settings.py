@@ -15,6 +15,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    PlainSerializer,
     Strict,
     ValidationError,
     ValidationInfo,
@@ -78,7 +79,7 @@ def settings_of(path: Path, kind: type[_T], brackets: bool = False) -> Iterator[
     """
     with named(f"{path}: "):
         try:
-            settings = kind.model_validate(tomllib.loads(path.read_text(encoding="utf-8")), context=path.parent)
+            settings = kind.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")), context=path.parent)
         except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
             raise ZSpringError(f"no TOML: {error}") from None
         except ValidationError as error:
@@ -178,5 +179,7 @@ def _beside(path: Path | str, info: ValidationInfo) -> Path:
 ALL_FREQUENCIES = (0.0, math.inf)
 Pair = Annotated[tuple[float, float], Strict(False)]  # strictly, TOML's lists are no tuples, and its texts no paths
 Band = Annotated[Pair, fitting("must be [lowest, highest] frequency in Hz", lambda band: 0 <= band[0] < band[1])]
-BesidePath = Annotated[Path, Strict(False), AfterValidator(_beside)]
+BesidePath = Annotated[
+    Path, Strict(False), AfterValidator(_beside), PlainSerializer(Path.as_posix, return_type=str, when_used="json")
+]
 Positive = Annotated[float, Field(gt=0)]

@@ -98,6 +98,19 @@ def test_the_core_knows_no_fmi():
             assert not re.search(r"fmi2[A-Z]|#include .*fmi", path.read_text("utf-8")), path
 
 
+def test_what_is_written_is_alike_on_every_system():
+    """Text goes out with its encoding and ends of lines told, as Windows has others."""
+    for path in PACKAGE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if not isinstance(node, ast.Call):
+                continue
+            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+            modes = {argument.value for argument in node.args if isinstance(argument, ast.Constant)}
+            told = {keyword.arg for keyword in node.keywords}
+            if name == "write_text" or (name == "open" and modes & {"w", "a", "x"}):
+                assert {"newline"} <= told and ("encoding" in told or "utf-8" in modes), f"{path}:{node.lineno}"
+
+
 def test_no_file_is_too_long_to_read():
     lengths = {path: len(path.read_text("utf-8").splitlines()) for path in PYTHON}
     assert not {path.name: count for path, count in lengths.items() if count > 300 and "tests" not in path.parts}

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import signal
+import subprocess
+import sys
 import time
 import zipfile
 from pathlib import Path
@@ -448,3 +451,13 @@ def test_bad_input_files_get_one_clear_line(tmp_path, text, named):
     _, err = zspring(tmp_path, "simulate", "--drive", "Wire", "--input", "bad.csv", status=1)
     assert len(err.strip().splitlines()) == 1 and err.startswith("zspring: ")
     assert all(word in err for word in named), err
+
+
+def test_names_that_the_output_cannot_hold_do_not_stop_a_command(tmp_path):
+    """A pipe or file on Windows takes the characters of its code page only."""
+    command = [sys.executable, "-m", "zspring", "info", "--sets", "dsa-380", "--write", "Łódź.ssv"]
+    variables = {**os.environ, "PYTHONIOENCODING": "cp1252"}
+    done = subprocess.run(command, cwd=tmp_path, env=variables, capture_output=True, timeout=120)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.decode("cp1252").split() == ["written:", r"\u0141\xf3d\u017a.ssv".replace(r"\xf3", "ó")]
+    assert (tmp_path / "Łódź.ssv").is_file()

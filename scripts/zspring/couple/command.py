@@ -120,6 +120,8 @@ def couple(pantograph, output, suffix, **given) -> None:
         raise ZSpringError(f"--uplift {uplift:g} and --mean-force {supply}: give one of them")
     given["scheme"] = given["scheme"] or ("sequential" if given["drive"] == "Wire" else "implicit")
     if ssp_path:
+        if ssp_path.suffix.lower() != ".ssp":
+            raise ZSpringError(f"--ssp {ssp_path}: must end in .ssp")
         given |= {"scheme": "parallel", "drive": "Wire", "start_up": "direct"}
     coupling = Coupling(given["scheme"], given["drive"], given["tolerance"])
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import base64
-import gzip
 import json
 import re
 import string
 import zipfile
+import zlib
 from pathlib import Path
 
 from ..errors import ZSpringError
@@ -62,7 +62,7 @@ def page() -> str:
         code = module(model)
         if found is None or found[1].encode() not in code:
             raise ZSpringError(f"{HERE / model}.wasm is of another version than the FMU: build it anew")
-        packed = gzip.compress(code, mtime=0)
+        packed = zlib.compress(code, 9)
         models[model] = {"module": base64.b64encode(packed).decode(), "description": description}
     sets, lines = (
         {name: path.read_text("utf-8") for name, path in packaged_sets(kind).items() if path.suffix == ".ssv"}

@@ -29,11 +29,11 @@ def explore(output) -> None:
         if output.suffix.lower() not in (".html", ".htm"):
             raise ZSpringError(f"--output {output}: must end in .html")
         with replaced(output) as unfinished:
-            unfinished.write_text(text, "utf-8")
+            unfinished.write_text(text, "utf-8", newline="\n")
         click.echo(f"written: {output}")
         return
     path = Path(tempfile.mkdtemp(prefix="zspring-")) / "explorer.html"
-    path.write_text(text, "utf-8")
+    path.write_text(text, "utf-8", newline="\n")
     click.echo(f"opening: {path}")
     if not webbrowser.open(path.as_uri()):
         raise ZSpringError(f"found no browser: open {path}")

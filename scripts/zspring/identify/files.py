@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from datetime import datetime, timezone
 from pathlib import Path
@@ -28,7 +29,10 @@ def fit_head(fmu: Fmu, settings: Settings) -> dict[str, str]:
     files = [*(source.path for source in settings.sources), *([settings.static.path] if settings.static else [])]
     return {
         "SHA-256 of the FMU": fmu.sha256,
-        **{f"setting {key}": repr(value) for key, value in settings},
+        **{
+            f"setting {key}": json.dumps(value)
+            for key, value in settings.model_dump(mode="json", by_alias=True).items()
+        },
         **content_of(files),
     }
 

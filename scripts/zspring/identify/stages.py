@@ -35,7 +35,7 @@ class Log:
     """The log of the run: a file, with the time of each entry."""
 
     def __init__(self, path: Path):
-        self._file = open(path, "w", encoding="utf-8")
+        self._file = open(path, "w", encoding="utf-8", newline="\n")
 
     def write(self, text: str) -> None:
         """To the file alone."""

@@ -57,7 +57,7 @@ def run_mechanism(
     title = f"Linkage of the head suspension, seen from the upper frame{synthetic_note(fmu, used)}"
     save(mechanism_figure(cycles, magnifications, title), figure)
     about = f"A steady cycle at {frequency:g} Hz, simulated{synthetic_note(fmu, used)}."
-    page.write_text(animation_html(cycles, magnifications, about), encoding="utf-8")
+    page.write_text(animation_html(cycles, magnifications, about), encoding="utf-8", newline="\n")
     for cycle in cycles:
         print(
             f"{cycle.frequency:g} Hz, {cycle.acceleration:g} m/s2: head {1e3 * np.ptp(cycle.u1) / 2:.2f} mm, "

@@ -135,7 +135,7 @@ def _measure(
         f"{count} cases in {seconds:.1f} s on {threads} worker threads, {count / seconds:.1f} cases/s; "
         f"{cpu / count:.2g} s of CPU a case, workers busy {100 * busy / (threads * seconds):.0f} %"
     )
-    with (record.path.parent / "study.log").open("a", encoding="utf-8") as log:
+    with (record.path.parent / "study.log").open("a", encoding="utf-8", newline="\n") as log:
         log.write(f"{now()}: {speed}\n")
     return speed
 
