@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from platform_runs import RUNS, TABLES, host_calls
 from release_tools import DIST, PLATFORMS, tool
+from windows_python import place_c_library
 
 from harness import Fmu
 
@@ -30,7 +31,7 @@ def release(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Fmu]:
 
 @pytest.fixture(scope="session")
 def host(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
-    """host(platform): the program of host.c for that platform."""
+    """host(platform): the program of host.c for that platform; for Windows beside Microsoft's own C library."""
     folder = tmp_path_factory.mktemp("host")
     headers = Path(fmpy.__file__).parent / "c-code"
 
@@ -56,20 +57,31 @@ def host(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
                 ],
                 check=True,
             )
+            if system == "Windows":
+                place_c_library(folder)
         return program
 
     return compiled
 
 
 @pytest.fixture(scope="session")
-def emulated(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., str]]:
-    """emulated(platform, command, input): output of a program for that platform, run on x86_64 Linux."""
+def wine_variables(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
+    """The environment of programs under wine, in which a folder of its own is drive C."""
     variables = {
         **os.environ,
         "WINEPREFIX": str(tmp_path_factory.mktemp("wine")),
         "WINEDEBUG": "-all",
-        "WINEDLLOVERRIDES": "mscoree,mshtml=",  # else it asks to install Mono and Gecko
+        # Without the first it asks to install Mono and Gecko. The second is Microsoft's where it is beside the program.
+        "WINEDLLOVERRIDES": "mscoree,mshtml=;ucrtbase=n,b",
     }
+    yield variables
+    if shutil.which("wineserver"):
+        subprocess.run(["wineserver", "--kill"], env=variables)
+
+
+@pytest.fixture(scope="session")
+def emulated(wine_variables: dict[str, str]) -> Callable[..., str]:
+    """emulated(platform, command, input): output of a program for that platform, run on x86_64 Linux."""
 
     def emulator(platform: str) -> list[str]:
         if platform == "win64":
@@ -84,14 +96,12 @@ def emulated(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[...,
 
     def run(platform: str, command: list[str | Path], text: str) -> str:
         done = subprocess.run(
-            [*emulator(platform), *command], input=text, text=True, capture_output=True, env=variables, timeout=600
+            [*emulator(platform), *command], input=text, text=True, capture_output=True, env=wine_variables, timeout=600
         )
         assert done.returncode == 0, done.stderr[-2000:]
         return done.stdout
 
-    yield run
-    if shutil.which("wineserver"):
-        subprocess.run(["wineserver", "--kill"], env=variables)
+    return run
 
 
 def location(folder: Path, platform: str) -> str:

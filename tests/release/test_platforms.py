@@ -1,7 +1,7 @@
 """The libraries for other platforms run, under wine and qemu, and give the results of the one for linux64.
 
 A small C host (host.c), compiled for each platform, makes the same calls everywhere and prints all outputs to
-the last bit. All operations are the same everywhere, none is contracted.
+the last bit. All operations are the same everywhere, none is contracted; on Windows it has Microsoft's C library.
 """
 
 from __future__ import annotations
