@@ -88,7 +88,9 @@ try {
   const finished = (id) => until(([name]) => document.getElementById(name).getAttribute("aria-busy") === "false", id);
   await page.selectOption("#set", "dsa-250");
   told.sets.push(await page.inputValue("#set"), await page.inputValue('[id="value-m1"]'));
+  told.sliders = [await page.isVisible("#slider-k1"), await page.isVisible('[id="slider-zspring.Mf"]')];
   await page.click("#reset");
+  told.sliders.push(await page.isVisible("#slider-k1"), await page.isVisible('[id="slider-zspring.Mf"]'));
   told.sets.push(await page.inputValue("#set"));
   await drop("own line.ssv", given.line);
   await finished("line");

@@ -108,6 +108,7 @@ def test_the_curves_are_right_at_five_points_before_and_after_a_slider_moved(tol
 
 def test_files_arrive_and_broken_ones_get_a_line(told, tmp_path):
     assert told["dropped"] == "8" and told["sets"] == ["own values", "dsa-250", "7.51", ""]
+    assert told["sliders"] == [True, False, False, True]  # those with an effect: Linear, then ZSpring
     state = "every 0.125 Hz; measured otherwise: direction down, here up"
     assert told["afterCsv"] == [False, "1", "Remove measured.csv", "5", state]
     path = tmp_path / "written.ssv"

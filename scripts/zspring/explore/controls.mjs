@@ -3,7 +3,7 @@
 import { checked } from "./files.mjs";
 
 export const SET_BY_VIEWS = /^(drive$|bench\.)/;
-const SLIDERS = ["zspring.Mf", "zspring.k", "zspring.l0", "zspring.L1", "zspring.L2", "zspring.d", "m1", "c3", "k2", "static_force"];
+const SLIDERS = ["zspring.Mf", "zspring.k", "zspring.l0", "zspring.L1", "zspring.L2", "zspring.d", "m1", "k1", "c3", "k2", "static_force"];
 const RANGE = 4; // a slider goes to so many times the start value
 const NOTCHES = 400;
 
@@ -22,11 +22,14 @@ export class Controls {
     this.refused = refused;
     this.values = {}; // that differ from the starts
     this.fields = new Map();
+    this.rows = new Map();
     for (const variable of description.variables.values()) {
       if (variable.causality !== "parameter" || SET_BY_VIEWS.test(variable.name)) continue;
       const at = variable.type === "Enumeration" && variable.name !== "solver.tangent" ? "choices"
         : SLIDERS.includes(variable.name) ? "sliders" : "others";
-      document.getElementById(at).append(this.field(variable));
+      const row = this.field(variable);
+      document.getElementById(at).append(row);
+      this.rows.set(variable.name, row);
     }
   }
 
@@ -95,6 +98,7 @@ export class Controls {
       else this.values[name] = value;
       this.fields.get(name)?.();
     }
+    for (const [name, row] of this.rows) row.hidden = !this.counts(name);
     this.changed(live);
   }
 
@@ -107,6 +111,13 @@ export class Controls {
     this.values = {};
     for (const show of this.fields.values()) show();
     this.set(values);
+  }
+
+  /** Whether a parameter has an effect with the suspension as it is. */
+  counts(name) {
+    const suspension = this.get("suspension");
+    if (name === "k1") return suspension === "Linear";
+    return /^zspring\./.test(name) ? suspension !== "Linear" : name !== "friction" || suspension === "ZSpring";
   }
 
   /** All that an FMU is to be told. */
