@@ -53,6 +53,10 @@ try {
   await page.screenshot({ path: `${folder}/explorer.png` });
   told.start = await save("#frf-csv");
 
+  await page.focus("#skip");
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("Tab");
+  told.skipped = await page.evaluate(() => document.activeElement.id);
   await page.focus('[id="slider-zspring.Mf"]'); // the keyboard moves it
   for (let i = 0; i < 40; ++i) await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Tab");
@@ -113,6 +117,13 @@ try {
   told.doubt = await text("#line-state");
   told.swept = [await page.getAttribute("#sweep-result", "aria-busy"), await text("#sweep-state")];
   told.pinned = (await rows("#statistics")).at(-1);
+  await write("#uplift", "300");
+  await page.keyboard.press("Tab");
+  await finished("line");
+  told.lifted = await text("#line-state");
+  await write("#uplift", "0");
+  await page.keyboard.press("Tab");
+  await finished("line");
   told.address = await page.evaluate(() => location.hash);
 
   await page.click("#tab-static");

@@ -145,6 +145,7 @@ def test_the_run_under_the_line(told):
 def test_what_is_of_other_settings_or_not_to_be_relied_on_is_told(told):
     assert told["busy"] == "true"
     assert re.match(r"Do not rely on the statistics: from \d+ m on the far end reflects", told["doubt"])
+    assert re.search(r"; uplift of 2\d\d mm at a support: the line's model is for up to 200 mm$", told["lifted"])
     assert told["swept"] == ["true", "this sweep is of other settings"]
     assert told["pinned"][0].startswith("pinned, its spans: start values; en-50318-2002, 200 km/h")
     assert told["pinned"][1:] == told["statistics"][1][1:]
@@ -175,6 +176,7 @@ def test_static_force_and_slip_map(told):
 
 def test_it_fits_a_phone_and_every_control_has_a_name(told):
     assert told["tooWide"] is False and told["unlabelled"] == []
+    assert told["skipped"] == "frf-plot"  # behind the tabs
     assert told["keys"] == ["2", "5.125"] and told["onsets"] == 28
     assert told["contrast"][0] > 4.5, told["contrast"]  # WCAG 2, AA
     assert "58\N{NO-BREAK SPACE}%" in told["point"] and told["synthetic"].startswith("Synthetic")

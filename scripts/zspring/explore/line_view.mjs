@@ -104,7 +104,7 @@ export class LineView {
       Object.assign(this, { results, settings, frames: results[0].frames, shownHeads: heads, made });
       stale("line", false);
       const lifted = Math.max(...results.map((result) => result.lifted));
-      const doubts = [...settings.doubts, ...(lifted > SMALL ? [`uplift of ${(1e3 * lifted).toFixed(0)} mm at a support: the line's model is for up to ${1e3 * SMALL} mm`] : [])];
+      const doubts = [...settings.doubts, ...(lifted > SMALL ? [`uplift of ${(1e3 * lifted).toPrecision(3)} mm at a support: the line's model is for up to ${1e3 * SMALL} mm`] : [])];
       at("line-state").textContent = doubts.length ? `Do not rely on the statistics: ${doubts.join("; ")}` : "";
       at("place").max = this.frames.length - 1;
       at("place").disabled = at("play").disabled = false;

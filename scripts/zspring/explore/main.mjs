@@ -161,6 +161,7 @@ const sets = new Map([["", {}], ...Object.entries(data.sets).map(([name, text]) 
 at("set").append(new Option("start values of the FMU", ""), ...Object.keys(data.sets).map((name) => new Option(name)), new Option("own values", OWN));
 at("set").options[sets.size].disabled = true;
 at("set").onchange = () => controls.replace(sets.get(at("set").value));
+at("skip").onclick = () => at(`tab-${shown}`).focus(); // past all parameters, by keyboard
 at("reset").onclick = () => controls.replace({});
 at("pin").onclick = () => {
   if (at(shown).classList.contains("stale")) return tell("Pin: wait until the curves are those of the parameters");

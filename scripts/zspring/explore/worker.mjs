@@ -78,9 +78,8 @@ const jobs = {
       coupled.advance();
       told.positions.push(coupled.position);
       told.forces.push(coupled.force);
-      if (coupled.steps % often) continue;
-      told.lifted = Math.max(told.lifted, ...supports.get());
-      if (!frames) continue;
+      for (const uplift of supports.get()) if (uplift > told.lifted) told.lifted = uplift;
+      if (!frames || coupled.steps % often) continue;
       const first = Math.max(0, Math.ceil((coupled.position - HALF_WINDOW) / APART));
       const last = Math.min(Math.floor(length / APART), Math.floor((coupled.position + HALF_WINDOW) / APART));
       const places = Array.from({ length: last - first + 1 }, (_, i) => APART * (first + i));
