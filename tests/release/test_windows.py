@@ -160,6 +160,26 @@ def test_output_goes_to_a_file(windows: WindowsPython, tmp_path: Path):
     assert (tmp_path / "Łódź.ssv").is_file() and "\\u0141ód" in (tmp_path / "names.txt").read_bytes().decode("cp1252")
 
 
+INTERRUPTED = """import _thread, pathlib, sys, threading, time
+def interrupt():
+    while not list(pathlib.Path("lang").glob("*.partial.csv")):
+        time.sleep(0.02)
+    _thread.interrupt_main()
+threading.Thread(target=interrupt, daemon=True).start()
+sys.argv = ["zspring", "frf", "--frequencies", "2:14:0.01", "--output", "lang"]
+from zspring.__main__ import main
+sys.exit(main())
+"""
+
+
+def test_an_interrupt_keeps_what_there_is(windows: WindowsPython, tmp_path: Path):
+    """As Ctrl-C comes to Python; wine gives no console to press it in."""
+    (tmp_path / "interrupted.py").write_text(INTERRUPTED)
+    status, out = windows.run(windows.home / "python.exe", "interrupted.py", folder=tmp_path)
+    assert status == 130 and re.match(r"zspring: interrupted after \d+ of 7206 points, kept in lang", out), out
+    assert (tmp_path / "lang/frf.partial.csv").is_file()
+
+
 def test_a_refusal_is_one_line(windows: WindowsPython, tmp_path: Path):
     status, out = windows.zspring(tmp_path, "simulate", "--input", "nicht da.csv")
     assert status == 1 and out == "zspring: nicht da.csv: No such file or directory\n"
