@@ -174,6 +174,23 @@ def test_a_slow_sweep_gives_the_response_within_its_errors(tmp_path, octaves, wa
     assert re.search(r"the sweep goes by -?(0\.06|1\.2)\d* .*, the settings say 0\.(03|6)", err), err
 
 
+@pytest.mark.parametrize("duration, periods", [(120.0, 10), (240.0, 10), (240.0, 40)])
+def test_noise_is_not_taken_for_the_lag_of_a_slow_sweep(tmp_path, duration, periods):
+    """The closer points are, the more does noise bend the curve through them: errors stay those that there are."""
+    record = swept(2.0, 8.0, duration, octaves=True)
+    random = np.random.default_rng(5)
+    force = record.force + 0.3 * random.standard_normal(record.force.size)
+    settings = BASE + f"[sweep]\nkind = 'slow'\noctaves = {120 / duration}\nperiods = {periods}\n"
+    columns = {"time__s": record.time, "force__N": force, "position__m": record.displacement}
+    (curve,), _, _ = found(written(tmp_path, settings, **columns))
+    settled = slice(3, None)
+    off = np.abs(curve.H / [LINEAR.receptance(f) for f in curve.frequency] - 1)[settled]
+    assert curve.error is not None
+    stated = np.linalg.norm(curve.error, axis=1)[settled]
+    assert np.mean(off < 1.96 * stated) > 0.9
+    assert 0.7 < np.sqrt(np.mean(stated**2) / np.mean(off**2)) < 2
+
+
 def as_record(shaker: Shaken, displacement: np.ndarray, force: np.ndarray, steps=(0.0, 0.0)) -> Record:
     def signal(values: np.ndarray, step: float) -> Signal:
         values = step * np.round(values / step) if step else values
@@ -276,7 +293,7 @@ def test_a_point_has_no_less_in_common_than_its_neighbours():
     """Within 0.2 in the logarithm of the frequency, of its own level alone."""
     frequency, common = (2.0, 3.0, 3.5, 4.0, 9.0, 3.6), (0.004, 0.001, 0.0, 0.003, 0.002, 0.01)
     points = [
-        Point("a", "1" if i < 5 else "2", 0, 1, f, 9, H=1e-4j, acceleration=1.0 + (i == 5), common=c)
+        Point("a", "1" if i < 5 else "2", 0, 1, f, 9, H=1e-4j, acceleration=1.0 + (i == 5), harmonics=c)
         for i, (f, c) in enumerate(zip(frequency, common))
     ]
     one, other = grouped(points, "up")

@@ -132,7 +132,7 @@ def _measured(
         freedom=freedom,
         white=white,
         rounding=rounding,
-        common=control_error(motions / abs(z), forces / abs(f)),
+        harmonics=control_error(motions / abs(z), forces / abs(f)),
         acceleration=float(abs(z) * omega**2),
         scatter=math.sqrt(max(float(amplitude.var(ddof=1)) - of_noise**2, 0)) / abs(z),
         force=padded(np.abs(F.mean(0))),

@@ -99,14 +99,14 @@ def _with_control(points: Sequence[Point]) -> list[Point]:
 
 
 def _with_neighbours(points: Sequence[Point]) -> list[Point]:
-    """Points of one level of which none has less in common with its neighbours than these have.
+    """Points of one level in which the motion's harmonics count no less than in their neighbours.
 
     Where the rods are about to slip the force has no harmonics of its own yet, but those of the motion count the most.
     """
     place = np.log([point.frequency for point in points])
-    common = np.array([point.common for point in points])
+    harmonics = np.array([point.harmonics for point in points])
     near = np.abs(np.subtract.outer(place, place)) < REACH[0]
-    return [replace(point, common=float(common[there].max())) for point, there in zip(points, near)]
+    return [replace(point, harmonics=float(harmonics[there].max())) for point, there in zip(points, near)]
 
 
 def _ways(frequencies: Sequence[float]) -> Sequence[str | None]:

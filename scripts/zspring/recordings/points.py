@@ -31,7 +31,8 @@ class Point:
     freedom: np.ndarray = field(default_factory=lambda: np.full(2, np.nan))  # how many numbers tell it
     white: float = math.nan  # what either variance would be if all that is not periodic were white noise
     rounding: float = math.nan  # standard error of magnitude, relative, and phase by the converter's steps
-    common: float = math.nan  # the same by what neighbouring points share
+    harmonics: float = math.nan  # the same by harmonics of the motion, which neighbouring points share
+    lag: float = 0.0  # the same by the rate of a slow sweep, which they share as well
     acceleration: float = math.nan  # m/s2, peak
     scatter: float = math.nan  # of the motion's amplitude from period to period, relative, beyond its noise
     force: np.ndarray = field(default_factory=lambda: np.full(MOST, np.nan))  # N, peaks
@@ -54,6 +55,11 @@ class Point:
     def errors(self) -> np.ndarray:
         """Standard errors (2,) of the magnitude, relative, and of the phase in rad."""
         return np.sqrt(students(self.variance, self.freedom) + self.rounding**2 + self.common**2)
+
+    @property
+    def common(self) -> float:
+        """What of either error neighbouring points share."""
+        return math.hypot(self.harmonics, self.lag)
 
     @property
     def magnitude_error(self) -> float:

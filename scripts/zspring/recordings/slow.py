@@ -20,6 +20,7 @@ from .track import Stretch, Turns
 
 OFF = 0.2  # relative distance of the rate that was found from the one that was told
 LAGS = 0.02  # relative share of the sweep's rate in H that is marked
+NEAR, QUIET = 0.1, LAGS / 4  # relative distance in frequency; relative noise of that share
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,8 @@ def _with_lag(points: list[Point], rate: Rate) -> list[Point]:
     """With what the sweep's rate makes of H, in the errors and, where it is large, as a mark.
 
     With the dynamic stiffness G over the angular frequency w the force is that of G - i w' G'' / 2 (first term of the
-    expansion in the rate w'); G'' is of the points beside each other, of their noise's share.
+    expansion in the rate w'), and the mean over a stretch of d rad/s that of G + d^2 G'' / 24; G'' is that of a parabola
+    through the points about each, less the share of their noise.
     """
     used = [point for point in points if not point.left_out]
     if len(used) < 3:
@@ -107,15 +109,33 @@ def _with_lag(points: list[Point], rate: Rate) -> list[Point]:
     omega = 2 * np.pi * np.array([point.frequency for point in used])
     G = 1 / np.array([point.H for point in used])
     error = np.array([max(point.magnitude_error, point.phase_error) for point in used])
-    slopes, steps = np.diff(G) / np.diff(omega), np.diff(omega)
-    half = np.pi * np.abs([rate.at(point.frequency) for point in used[1:-1]])
-    share = half * np.abs(2 * np.diff(slopes) / (steps[1:] + steps[:-1]) / G[1:-1])
-    noise = half * np.sqrt(error[:-2] ** 2 + 4 * error[1:-1] ** 2 + error[2:] ** 2) / np.abs(steps[1:] * steps[:-1])
-    clear = np.pad(np.sqrt(np.maximum(share**2 - noise**2, 0)), 1, mode="edge")
-    lagging = {id(point): float(part) for point, part in zip(used, clear)}
+    pace = 2 * np.pi * np.array([rate.at(point.frequency) for point in used])
+    swept = pace * [point.end - point.begin for point in used]
+    factor = np.hypot(pace / 2, swept**2 / 24)
+    lagging = {id(point): _lag(i, omega, G, error, factor[i]) for i, point in enumerate(used)}
     return [_lagging(point, lagging.get(id(point), 0.0)) for point in points]
+
+
+def _lag(i: int, omega: np.ndarray, G: np.ndarray, error: np.ndarray, factor: float) -> float:
+    """Relative share of point i, `factor` times its G''.
+
+    Second differences of noise grow with the square of how close points are: the parabola takes in as few of them as
+    make its noise small beside the point's own error, or those within NEAR.
+    """
+    for reach in range(1, (omega.size - 1) // 2 + 1):
+        first = min(max(i - reach, 0), omega.size - 2 * reach - 1)
+        near = slice(first, first + 2 * reach + 1)
+        apart = omega[near] - omega[i]
+        width = np.abs(apart).max()
+        if reach > 1 and width > NEAR * omega[i]:
+            break
+        weights = 2 * np.linalg.pinv(np.vander(apart / width, 3))[0] / width**2 * G[near] / G[i]
+        share, noise = factor * abs(weights.sum()), factor * np.linalg.norm(weights * error[near])
+        if noise < max(QUIET, error[i] / 2):
+            break
+    return math.sqrt(max(share**2 - noise**2, 0))
 
 
 def _lagging(point: Point, share: float) -> Point:
     mark = (f"swept too fast: H off by about {100 * share:.2g} %",) if share > LAGS else ()
-    return replace(point, common=math.hypot(point.common, share), marks=(*point.marks, *mark))
+    return replace(point, lag=share, marks=(*point.marks, *mark))
