@@ -144,7 +144,7 @@ def read_table(path: Path, aliases: Mapping[str, str] | None = None, skip: int =
         if len(row) != len(labels):
             raise ZSpringError(f"{path}, line {number}: {len(row)} values for {len(labels)} columns")
     units: Sequence[str] = ()
-    if rows and _are_units(rows[0][1]):
+    if rows and _are_units(rows[0][1], f"{path}, line {rows[0][0]}"):
         (_, units), *rows = rows
     signs = {match[1] or match[2] for _, row in rows for cell in row if (match := _DECIMAL.fullmatch(cell))}
     if len(signs) > 1:
@@ -164,10 +164,17 @@ def read_table(path: Path, aliases: Mapping[str, str] | None = None, skip: int =
     return Table(path, _head(line for _, line in numbered), columns, [number for number, _ in rows], "".join(signs))
 
 
-def _are_units(row: Sequence[str]) -> bool:
-    """Whether a row below the names has their units: no number, and nothing but what units are."""
+def _are_units(row: Sequence[str], where: str) -> bool:
+    """Whether a row below the names has their units: no number, and nothing but what units are.
+
+    Raises ZSpringError for one that has units, no digit, and what is no unit.
+    """
     texts = [cell.strip("[]()") for cell in row]
-    return any(map(str.isalpha, "".join(texts))) and all(map(is_unit, texts))
+    units = [text for text in texts if any(map(str.isalpha, text)) and is_unit(text)]
+    others = [text for text in texts if not is_unit(text)]
+    if units and others and not any(map(str.isdigit, "".join(row))):
+        raise ZSpringError(f"{where}: unit {others[0]!r} is none that is known, as {units[0]!r} beside it is")
+    return bool(units) and not others
 
 
 def read_head(path: Path) -> dict[str, str]:

@@ -28,6 +28,8 @@ SYMBOLS = {
     "N": "newton",
     "kN": "kilonewton",
     "mN": "millinewton",
+    "daN": "decanewton",
+    "kgf": "kilogram_force",
     "kg": "kilogram",
     "J": "joule",
     "W": "watt",

@@ -90,6 +90,7 @@ def test_every_reader_takes_decimal_commas_and_refuses_doubled_columns(tmp_path,
         ("# only: this\n", "needs a line of column names"),
         ("a,A\n1,2\n", "two columns 'A'"),
         ("wire_height,wire height\n1,2\n", "two columns 'wire height'"),
+        ("time,force,a\ns,tf,g\n0,1,2\n", "line 2: unit 'tf' is none that is known, as 's' beside it is"),
         ("\0\1", "no text in UTF-8"),
     ],
 )
@@ -113,7 +114,14 @@ def test_a_missing_column_tells_which_there_are(tmp_path):
     [
         *[("mm", "m", 1e-3), ("cm", "m", 1e-2), ("um", "m", 1e-6), ("µm", "m", 1e-6), ("km", "m", 1e3)],
         *[("ms", "s", 1e-3), ("min", "s", 60.0), ("h", "s", 3600.0), ("km/h", "m/s", 1 / 3.6)],
-        *[("kN", "N", 1e3), ("mN", "N", 1e-3), ("kN/mm", "N/m", 1e6), ("N/mm", "N/m", 1e3)],
+        *[
+            ("kN", "N", 1e3),
+            ("mN", "N", 1e-3),
+            ("daN", "N", 10.0),
+            ("kgf", "N", 9.80665),
+            ("kN/mm", "N/m", 1e6),
+            ("N/mm", "N/m", 1e3),
+        ],
         *[("g", "m/s2", 9.80665), ("mm/s^2", "m/s2", 1e-3), ("m s^-2", "m/s2", 1.0), ("m·s⁻²", "m/s2", 1.0)],
         *[("g/N", "1/kg", 9.80665), ("(m/s2)/N", "1/kg", 1.0), ("(mm/s)/N", "m/(N.s)", 1e-3), ("N s/m", "N.s/m", 1.0)],
         *[("deg", "rad", math.pi / 180), ("°", "rad", math.pi / 180), ("mrad", "rad", 1e-3)],
