@@ -100,8 +100,8 @@ def _with_lag(points: list[Point], rate: Rate) -> list[Point]:
     """With what the sweep's rate makes of H, in the errors and, where it is large, as a mark.
 
     With the dynamic stiffness G over the angular frequency w the force is that of G - i w' G'' / 2 (first term of the
-    expansion in the rate w'), and the mean over a stretch of d rad/s that of G + d^2 G'' / 24; G'' is that of a parabola
-    through the points about each, less the share of their noise.
+    expansion in the rate w'), and the mean over a stretch of d rad/s that of G + d^2 G'' / 24. G'' is that of a
+    parabola through the points about each, less the share of their noise.
     """
     used = [point for point in points if not point.left_out]
     if len(used) < 3:
