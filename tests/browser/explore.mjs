@@ -14,7 +14,7 @@ const told = { errors: [], requests: [] };
 const REFINED = "every 0.125 Hz";
 
 try {
-  const page = await browser.newPage({ viewport: { width: 1120, height: 925 }, deviceScaleFactor: firefox ? 1 : 1.25 });
+  const page = await browser.newPage({ viewport: { width: 1120, height: 960 }, deviceScaleFactor: firefox ? 1 : 1.25 });
   page.on("pageerror", (error) => told.errors.push(String(error)));
   page.on("console", (message) => {
     if (message.type() === "error" || message.type() === "warning") told.errors.push(message.text());
@@ -51,6 +51,15 @@ try {
   told.point = await text("#point-text");
   told.synthetic = await text("#synthetic");
   await page.screenshot({ path: `${folder}/explorer.png` });
+  const drawn = () => page.$eval("#frf-plot", (canvas) => canvas.toDataURL());
+  const magnitudes = await drawn();
+  await page.click("#pin");
+  await page.selectOption("#frf-shows", "phase");
+  told.phase = [await page.evaluate(() => location.hash), (await drawn()) === magnitudes];
+  await page.screenshot({ path: `${folder}/phase.png` });
+  await page.click("#unpin");
+  await page.selectOption("#frf-shows", "magnitude");
+  told.phase.push(await page.evaluate(() => location.hash), (await drawn()) === magnitudes);
   told.start = await save("#frf-csv");
 
   await page.focus("#skip");

@@ -181,7 +181,7 @@ READ = {
 
 
 def test_measured_responses_are_read_as_python_reads_them(fmus, tmp_path):
-    """In the same levels, each at the same frequencies with the same |H|."""
+    """In the same levels, each at the same frequencies with the same |H| and phase."""
     for (name, content), curves in zip(READ.items(), measured(fmus, list(READ.values()))):
         path = tmp_path / "measured.csv"
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -190,6 +190,8 @@ def test_measured_responses_are_read_as_python_reads_them(fmus, tmp_path):
         for curve, own in zip(curves, expected):
             np.testing.assert_allclose(curve["x"], own.frequency, rtol=1e-12, err_msg=name)
             np.testing.assert_allclose(curve["y"], np.abs(own.H), rtol=1e-12, err_msg=name)
+            turned = np.exp(1j * np.radians(curve["phase"])) * np.abs(own.H)
+            np.testing.assert_allclose(turned, own.H, rtol=1e-12, err_msg=name)
             if curve["acceleration"] is not None:
                 assert curve["acceleration"] == pytest.approx(np.median(own.acceleration), rel=0.03)
         if name.startswith(("as", "semicolons", "acc", "UTF")):
@@ -211,6 +213,7 @@ def test_broken_measured_responses_are_refused_in_a_line(fmus):
         "frequency [Hz],magnitude [m/N]\n5,0,0002\n": "line 2: has 3 cells, the head has 2",
         "frequency [Hz],frequency [Hz]\n5,5\n": "has two columns frequency",
         f"{head}magnitude [m/N]\n": "has no row with a measured point",
+        f"{head}magnitude [m/N],phase [N]\n1,1,1,1\n": "column phase: unit [N]: must be deg or rad",
         "frequency [Hz],amplitude,magnitude [m/N]\n5,1,1e-4\n": "column amplitude: unit []: must be that of a motion, "
         "as m/s2 or mm",
     }

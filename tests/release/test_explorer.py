@@ -106,6 +106,15 @@ def test_the_curves_are_right_at_five_points_before_and_after_a_slider_moved(tol
     assert ("zspring.Mf" in head(told[saved])["synthetic"]) is (saved == "start")
 
 
+def test_phases_are_drawn_instead_of_magnitudes_and_back(told):
+    """The text at the point tells the same phase; pinned curves follow."""
+    shown, same, back, again = told["phase"]
+    assert "page.frf-shows=phase" in shown and not same
+    assert "frf-shows" not in back and again
+    H = responses(told["start"])[1.0, 5.0]
+    assert f"phase {np.degrees(np.angle(H)):.1f}°" in told["point"]
+
+
 def test_files_arrive_and_broken_ones_get_a_line(told, tmp_path):
     assert told["dropped"] == "8" and told["sets"] == ["own values", "dsa-250", "7.51", ""]
     assert told["sliders"] == [True, False, False, True]  # those with an effect: Linear, then ZSpring

@@ -1,13 +1,17 @@
 // Frequency response by amplitude between its linear bounds, beside a measured one.
 
 import { colors, DASHES, pale, Plot } from "./plot.mjs";
-import { magnitude, PointView } from "./point_view.mjs";
+import { cut, magnitude, phase, PointView } from "./point_view.mjs";
 import { fill } from "./tables.mjs";
 
 const LOWEST = 0.5, HIGHEST = 20; // Hz
 const GRIDS = { coarse: 0.5, fine: 0.125 }; // Hz
 const BOUNDS = { locked: "LinearLocked", free: "LinearFree" };
 const MOST = 8, LARGEST = 20; // amplitudes, m/s2
+const SHOWN = {
+  magnitude: { y: "|H| = |Z/F|  [mm/N]", logY: true, of: magnitude, measured: ({ y }) => y.map((value) => 1e3 * value) },
+  phase: { y: "phase of H = -Z/F  [°]", logY: false, of: phase, measured: (curve) => curve.phase.map(cut) },
+};
 const at = (id) => document.getElementById(id);
 
 /** Frequencies in Hz between those of the fields, `step` apart. Throws Error. */
@@ -31,14 +35,18 @@ export function amplitudesOf(text) {
 
 export class FrfView {
   constructor(context) {
-    Object.assign(this, { context, pinned: [], measured: [], points: new Map(), step: 0, version: 0 });
+    Object.assign(this, { context, pinned: null, measured: [], points: new Map(), step: 0, version: 0 });
     this.plot = new Plot(at("frf-plot"), {
-      x: "frequency  [Hz]", y: "|H| = |Z/F|  [mm/N]", logY: true,
+      x: "frequency  [Hz]", ...SHOWN.magnitude,
       onPoint: (curve, i) => this.point.set(curve.amplitude, curve.x[i]),
       onKey: (key) => this.move(key),
     });
     this.point = new PointView(context, () => this.draw());
     at("frf-csv").onclick = () => this.save();
+    at("frf-shows").onchange = () => {
+      context.kept();
+      this.draw();
+    };
     for (const id of ["amplitudes", "low", "high"]) at(id).onchange = () => context.changed();
   }
 
@@ -112,11 +120,15 @@ export class FrfView {
     this.point.set(by[0] ? next : amplitude, Math.min(HIGHEST, Math.max(LOWEST, frequency + by[1] * GRIDS.fine)));
   }
 
-  curves() {
-    const made = [], amplitudes = [...this.points.keys()].filter((key) => typeof key === "number"), own = colors(amplitudes.length);
-    for (const [key, found] of this.points) {
+  get shows() {
+    return SHOWN[at("frf-shows").value] ?? SHOWN.magnitude;
+  }
+
+  curves(points = this.points) {
+    const made = [], amplitudes = [...points.keys()].filter((key) => typeof key === "number"), own = colors(amplitudes.length);
+    for (const [key, found] of points) {
       const bad = found.flatMap((p, i) => (p.status === "settled" ? [] : [i]));
-      const curve = { x: found.map((p) => p.frequency), y: found.map(magnitude), bad };
+      const curve = { x: found.map((p) => p.frequency), y: found.map(this.shows.of), bad };
       if (typeof key === "number") made.push({ ...curve, color: own[amplitudes.indexOf(key)], label: `${key} m/s²`, amplitude: key });
       else made.push({ ...curve, color: "#000", dash: key === "locked" ? DASHES.dashed : DASHES.dotted, label: `rods ${key}`, passive: true });
     }
@@ -125,12 +137,15 @@ export class FrfView {
 
   draw() {
     const amplitudes = [...this.points.keys()].filter((key) => typeof key === "number"), own = colors(amplitudes.length), other = colors(this.measured.length);
-    const measured = this.measured.map(({ label, acceleration, x, y }, i) => {
-      const place = amplitudes.indexOf(acceleration);
-      return { x, y: y.map((value) => 1e3 * value), dots: place < 0 ? "cross" : "ring", color: place < 0 ? other[i] : own[place], label: `measured ${label}`, passive: true };
+    const measured = this.measured.map((curve, i) => {
+      const { label, acceleration, x } = curve, place = amplitudes.indexOf(acceleration);
+      return { x, y: this.shows.measured(curve), dots: place < 0 ? "cross" : "ring", color: place < 0 ? other[i] : own[place], label: `measured ${label}`, passive: true };
     });
     const all = this.measured.flatMap(({ x }) => x).concat(this.frequencies ?? []);
-    this.plot.show([...this.pinned, ...this.curves(), ...measured], all.length ? { x: [Math.min(...all), Math.max(...all)] } : {}, this.point.mark);
+    const { pinned } = this, { shown } = this.point;
+    Object.assign(this.plot.options, this.shows);
+    const before = pinned ? pale(this.curves(pinned.points), pinned.what) : [];
+    this.plot.show([...before, ...this.curves(), ...measured], all.length ? { x: [Math.min(...all), Math.max(...all)] } : {}, shown && [shown.frequency, this.shows.of(shown)]);
     const rows = [["amplitude", "Hz, mm/N"]];
     for (const [key, points] of this.points) {
       const peaks = points.slice(1, -1).filter((p, i) => magnitude(p) > magnitude(points[i]) && magnitude(p) > magnitude(points[i + 2]));
@@ -157,12 +172,12 @@ export class FrfView {
   }
 
   pin(what) {
-    this.pinned = pale(this.curves(), what);
+    this.pinned = { points: this.points, what };
     this.draw();
   }
 
   unpin() {
-    this.pinned = [];
+    this.pinned = null;
     this.draw();
   }
 

@@ -12,7 +12,7 @@ import { StaticView } from "./static_view.mjs";
 
 const REST = 350; // ms after which a figure is refined
 const ACCURATE_STEP = 5e-4; // s, as the commands take it: the FMU's own is off by 7 % near 12 Hz
-const FIELDS = ["amplitudes", "low", "high", "point-amplitude", "point-frequency", "rate", "line-set", "speed", "uplift", "first-span", "last-span"]; // of views, kept in the address
+const FIELDS = ["amplitudes", "low", "high", "frf-shows", "point-amplitude", "point-frequency", "rate", "line-set", "speed", "uplift", "first-span", "last-span"]; // of views, kept in the address
 const OWN = "own values"; // no packaged set
 const at = (id) => document.getElementById(id);
 const data = JSON.parse(at("data").textContent);
@@ -56,7 +56,7 @@ const stale = (id, on) => {
   at(id).classList.toggle("stale", on);
   at(id).setAttribute("aria-busy", String(on));
 };
-const context = { pool, pantograph, catenary, lines: data.lines, tell, head, save, stale, readSsv, parameters: () => controls.parameters, changed: () => changed(false) };
+const context = { pool, pantograph, catenary, lines: data.lines, tell, head, save, stale, readSsv, parameters: () => controls.parameters, changed: () => changed(false), kept: () => history.replaceState(null, "", address()) };
 
 let rest = 0;
 const own = {}; // lines from files
@@ -124,7 +124,7 @@ function fromFragment() {
     else values[name] = checked(parameterOf(pantograph, name), text);
   }
   for (const id of FIELDS) at(id).value = fields[id] ?? initial[id];
-  if (!at("line-set").value) at("line-set").selectedIndex = 0;
+  for (const id of ["line-set", "frf-shows"]) if (!at(id).value) at(id).selectedIndex = 0;
   controls.replace(values);
   show(view);
 }

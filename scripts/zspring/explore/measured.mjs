@@ -6,20 +6,24 @@ const FREQUENCY = { hz: 1, khz: 1e3, "rad/s": 1 / TURN, rpm: 1 / 60, "1/min": 1 
 const G = 9.80665;
 const MOTION = { m: [1, 0], mm: [1e-3, 0], um: [1e-6, 0], "m/s": [1, 1], "mm/s": [1e-3, 1], "m/s2": [1, 2], "mm/s2": [1e-3, 2], g: [G, 2] }; // to SI, derivatives
 const FORCE = { N: 1, kN: 1e3 };
+const ANGLE = { deg: 1, "°": 1, rad: 360 / TURN }; // to degrees
 const APART = 0.25; // of the logarithm, between amplitudes of different levels
 const MOST_LEVELS = 12;
 
 const plain = (unit) => unit.replace(/[\s()^]/g, "").replace(/²/g, "2").replace(/[µμ]/g, "u").replace(/[·*]/g, ".");
 
-/** Of a unit of response: |H| in m/N from a value and the angular frequency; null for another unit. */
+/**
+ * Of a unit of response: |H| in m/N from a value and the angular frequency, as a function with the member `turned`, which
+ * makes the phase of H in degrees of that of the response; null for another unit.
+ */
 function receptance(unit) {
-  const text = plain(unit);
+  const text = plain(unit), made = (of, sign, derivatives) => Object.assign(of, { turned: (phase) => sign * phase - 90 * derivatives });
   for (const [motion, [factor, derivatives]] of Object.entries(MOTION))
     for (const [force, newtons] of Object.entries(FORCE)) {
       const forms = [`${motion}/${force}`, motion.startsWith("m/s") && force === "N" ? motion.replace("/", `/${force}/`) : ""];
-      if (forms.includes(text)) return (value, omega) => ((factor / newtons) * value) / omega ** derivatives;
+      if (forms.includes(text)) return made((value, omega) => ((factor / newtons) * value) / omega ** derivatives, 1, derivatives);
       const inverse = [`${force}/${motion}`, derivatives === 1 ? `${force}.s/${motion.slice(0, -2)}` : derivatives === 2 ? `${force}.s2/${motion.slice(0, -3)}` : ""];
-      if (inverse.includes(text)) return (value, omega) => ((newtons / factor) * value) ** -1 / omega ** derivatives;
+      if (inverse.includes(text)) return made((value, omega) => ((newtons / factor) * value) ** -1 / omega ** derivatives, -1, derivatives);
     }
   if (text === "1/kg") return receptance("m/s2/N");
   return text === "kg" ? receptance("N/m/s2") : null;
@@ -78,8 +82,8 @@ function levels(points, unit, [factor, derivatives]) {
 }
 
 /**
- * Curves {label, acceleration: nominal in m/s2 or NaN, x: Hz, y: |H| in m/N} by amplitude of a measured FRF's CSV.
- * Throws Error with the line.
+ * Curves {label, acceleration: nominal in m/s2 or NaN, x: Hz, y: |H| in m/N, phase: degrees, NaN where it is not told} by
+ * amplitude of a measured FRF's CSV. Throws Error with the line.
  */
 export function readMeasured(text) {
   const { rows, columns, comma } = table(text);
@@ -97,6 +101,8 @@ export function readMeasured(text) {
   const amplitude = columns.get("amplitude"), level = columns.get("level"), status = columns.get("status");
   const motion = amplitude && MOTION[plain(amplitude.unit)];
   if (amplitude && !motion) throw new Error(`column amplitude: unit [${amplitude.unit}]: must be that of a motion, as m/s2 or mm`);
+  const told = parts.length === 1 && columns.get("phase"), toDegrees = told && ANGLE[plain(told.unit)];
+  if (told && !toDegrees) throw new Error(`column phase: unit [${told.unit}]: must be deg or rad`);
   const points = [];
   for (const { cells, number } of rows) {
     if (status && /^(left out|failed)/.test(cells[status.place])) continue;
@@ -108,16 +114,17 @@ export function readMeasured(text) {
       return value;
     };
     const frequency = toHertz * numberAt("frequency", true), omega = TURN * frequency;
-    const size = Math.hypot(...parts.map((part) => numberAt(part, part === "magnitude")));
+    const values = parts.map((part) => numberAt(part, part === "magnitude")), size = Math.hypot(...values);
+    const angle = told ? toDegrees * numberAt("phase") : parts.length > 1 ? (360 / TURN) * Math.atan2(values[1], values[0]) : NaN;
     if (!size) throw new Error(`line ${number}: the response is 0`);
-    points.push({ frequency, H: toReceptance(size, omega), amplitude: amplitude ? numberAt("amplitude", true) : NaN, level: level && cells[level.place] });
+    points.push({ frequency, H: toReceptance(size, omega), phase: toReceptance.turned(angle), amplitude: amplitude ? numberAt("amplitude", true) : NaN, level: level && cells[level.place] });
   }
   if (!points.length) throw new Error("has no row with a measured point");
   const median = (some) => some.map((point) => point.amplitude).sort((a, b) => a - b)[some.length >> 1];
   const known = (some) => (motion?.[1] === 2 ? Number((motion[0] * median(some)).toPrecision(3)) : NaN);
   const found = level ? [...groups(points, "level")].map(([label, some]) => ({ label, acceleration: known(some), some }))
     : amplitude ? levels(points, amplitude.unit, motion) : [{ label: "", acceleration: NaN, some: points }];
-  return found.map(({ label, acceleration, some }) => ({ label, acceleration, x: some.map((point) => point.frequency), y: some.map((point) => point.H) }));
+  return found.map(({ label, acceleration, some }) => ({ label, acceleration, x: some.map((point) => point.frequency), y: some.map((point) => point.H), phase: some.map((point) => point.phase) }));
 }
 
 /** What the head of a file says of its bench that is other there than what the page has: lines of text. */

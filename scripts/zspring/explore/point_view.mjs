@@ -10,6 +10,9 @@ const SLOWER = 12; // times
 const MAGNIFIED = [1, 2, 5, 10, 20, 50, 100];
 const VISIBLE = { length: 0.03, angle: 0.35 }; // m, rad: the largest motion drawn
 const at = (id) => document.getElementById(id);
+/** Degrees as near -90 as may be, where a driving point has them. */
+export const cut = (degrees) => degrees - 360 * Math.round((degrees + 90) / 360);
+export const phase = (point) => (point.H ? cut((Math.atan2(point.H[1], point.H[0]) * 180) / Math.PI) : NaN);
 export const magnitude = (point) => (point.H ? 1e3 * Math.hypot(...point.H) : NaN); // mm/N
 
 
@@ -75,15 +78,14 @@ export class PointView {
     const fits = (factor) => factor * largest([...column("head.z"), ...column("upper_frame.z")]) <= VISIBLE.length && factor * largest(angles.flat()) <= VISIBLE.angle;
     const magnified = MAGNIFIED.findLast(fits) ?? 1;
     this.cycle = { geometry: { theta, L1, L2, d }, frequency: point.frequency, rows, names, bound: hasDryFriction(parameters) ? bound : Infinity, magnified };
-    this.mark = point.H ? [point.frequency, magnitude(point)] : null;
+    this.shown = point.H ? point : null;
     this.drawn();
     this.drawLinkage(0);
     const linear = parameters.suspension === "Linear";
     const share = [column("zspring.moment_alpha"), column("zspring.moment_beta")].map((moments) => moments.map((m) => Math.abs(m) / bound));
     const slides = share.map((some) => Math.round((100 * some.filter((s) => s >= SLIDES).length) / (some.length || 1)));
-    const phase = point.H ? (Math.atan2(point.H[1], point.H[0]) * 180) / Math.PI : NaN;
     at("point-text").textContent = point.H
-      ? `${point.acceleration} m/s² at ${point.frequency} Hz: |H| = ${magnitude(point).toPrecision(4)} mm/N, phase ${phase.toFixed(1)}°, ${point.status} after ${point.periods} periods; ` +
+      ? `${point.acceleration} m/s² at ${point.frequency} Hz: |H| = ${magnitude(point).toPrecision(4)} mm/N, phase ${phase(point).toFixed(1)}°, ${point.status} after ${point.periods} periods; ` +
         (!hasDryFriction(parameters) ? "no joint with dry friction" : `the joint at the head slides ${slides[0]}\u00a0%, that at the frame ${slides[1]}\u00a0% of the period`) +
         (Math.min(...column("contact.force")) < 0 ? "; the force falls below 0: the bench holds the head, a wire would lose it" : "")
       : point.status;
