@@ -166,7 +166,7 @@ def test_a_fit_is_repeated_but_not_overwritten_by_one_with_other_settings_or_dat
     before = (tmp_path / "out/fitted.ssv").read_bytes()
     (tmp_path / "fit.toml").write_text(toml.replace("start = 9000", "start = 9500"))
     _, _, err = in_process(*command)
-    assert re.search(r"fit\.csv is of other settings \(setting free: .*start=9000.*, now .*start=9500", err)
+    assert re.search(r'fit\.csv is of other settings \(setting free: .*"start": 9000.*, now .*"start": 9500', err)
     (tmp_path / "fit.toml").write_text(toml)
     (tmp_path / "b.csv").write_text(text.replace("0.0243", "0.0244"))
     assert "fit.csv is of other settings (file 1: " in in_process(*command)[2]

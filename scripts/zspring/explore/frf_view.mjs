@@ -1,4 +1,4 @@
-// Frequency response by amplitude between its linear bounds, beside a measured one.
+// Frequency response by amplitude beside both linear models and a measured one.
 
 import { colors, DASHES, pale, Plot } from "./plot.mjs";
 import { cut, magnitude, phase, PointView } from "./point_view.mjs";
