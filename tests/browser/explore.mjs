@@ -90,6 +90,10 @@ try {
   await drop("measured.csv", given.csv);
   await measured();
   told.afterCsv = [await page.isVisible("#message"), await page.inputValue("#amplitudes"), await text("#unmeasure"), await page.inputValue("#low"), await text("#frf-state")];
+  await page.selectOption("#frf-shows", "phase");
+  told.phase.push(await text("#frf-state"));
+  await page.selectOption("#frf-shows", "magnitude");
+  told.phase.push(await text("#frf-state"));
   await drop("broken.ssv", given.broken);
   await page.waitForSelector("#message:not([hidden])");
   told.refusal = await text("#message");

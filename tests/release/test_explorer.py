@@ -108,9 +108,10 @@ def test_the_curves_are_right_at_five_points_before_and_after_a_slider_moved(tol
 
 def test_phases_are_drawn_instead_of_magnitudes_and_back(told):
     """The text at the point tells the same phase; pinned curves follow."""
-    shown, same, back, again = told["phase"]
+    shown, same, back, again, *states = told["phase"]
     assert "page.frf-shows=phase" in shown and not same
     assert "frf-shows" not in back and again
+    assert ["that the file does not tell" in state for state in states] == [True, False]
     H = responses(told["start"])[1.0, 5.0]
     assert f"phase {np.degrees(np.angle(H)):.1f}°" in told["point"]
 

@@ -46,6 +46,7 @@ export class FrfView {
     at("frf-shows").onchange = () => {
       context.kept();
       this.draw();
+      if (at("frf").getAttribute("aria-busy") === "false") at("frf-state").textContent = this.told();
     };
     for (const id of ["amplitudes", "low", "high"]) at(id).onchange = () => context.changed();
   }
@@ -108,7 +109,8 @@ export class FrfView {
     const beyond = [...this.points].filter(([key, points]) => typeof key === "number" && points.length < this.frequencies.length);
     const stroke = beyond.length ? `; from ${beyond.map(([key]) => `${key}`).join(", ")} m/s² low frequencies left out: stroke over 100 mm` : "";
     const other = this.measured.length ? this.others() : [];
-    return `every ${this.step} Hz${found.join("")}${stroke}${other.length ? `; measured otherwise: ${other.join("; ")}` : ""}`;
+    const untold = this.shows === SHOWN.phase && this.measured.some(({ phase }) => phase.some(Number.isNaN)) ? "; measured phases that the file does not tell are not drawn" : "";
+    return `every ${this.step} Hz${found.join("")}${stroke}${untold}${other.length ? `; measured otherwise: ${other.join("; ")}` : ""}`;
   }
 
   /** By the keyboard along the curves: frequency, or the next amplitude. */
