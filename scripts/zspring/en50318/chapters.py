@@ -80,7 +80,7 @@ def edition_chapter(made: Outcome, catenary: Fmu, pantograph: Fmu) -> Chapter:
     if any(judged.values()):
         chapter.blocks.append(report.verdict(edition.name, judged) + ".")
         picture = plot.ranges_figure(judged, edition.name)
-        caption = "Figures within their accepted ranges; those whose range is a single value are not drawn"
+        caption = "Values within their accepted ranges; those whose range is a single value are not drawn"
         chapter.blocks.append(Picture(picture, caption, f"{slug(edition.name)}-ranges.png"))
     else:
         chapter.blocks.append("No accepted ranges are known to us, so that nothing is judged here.")
@@ -137,7 +137,7 @@ def sensitivity_chapter(made: Outcome, found: Mapping[str, Mapping[str, Statisti
     text = (
         "What the published data leave open, and the numerical settings, one at a time from the reference, whose "
         "sources are told with its parameters above. Filters of order 2 and 8 are run twice like that of order 4, "
-        "which the reference has. Figures outside their accepted ranges are marked. The reference was chosen "
+        "which the reference has. Values outside their accepted ranges are marked. The reference was chosen "
         "among published values with the ranges in view: that its values are inside is the agreement of a chosen "
         "set and no validation; how many of these choices are inside tells more."
     )
